@@ -1,0 +1,59 @@
+#!/bin/sh
+# All that a new user needs on a bare Debian 12:
+#   sh cmake/quickstart.sh demo    a real solid, from its surface to a calibrated mass-spring model in out/elephant/
+#   sh cmake/quickstart.sh test    build everything and run the tests
+# Both install the Debian packages that are missing; run again, they do only what is left to do.
+set -eu
+cd "$(dirname "$0")/.."
+
+build_packages="g++ cmake ninja-build pkg-config libeigen3-dev libtbb-dev libcgal-dev coinor-libipopt-dev
+                nlohmann-json3-dev libhdf5-dev libcli11-dev"
+test_packages="doctest-dev libbenchmark-dev python3 python3-h5py"
+
+install_missing() {
+    missing=""
+    for package in "$@"; do
+        dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing="$missing $package"
+    done
+    [ -n "$missing" ] || return 0
+    as_root=""
+    [ "$(id -u)" -eq 0 ] || as_root="sudo"
+    echo "installing:$missing"
+    $as_root apt-get update -qq
+    $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing >/dev/null
+}
+
+# elephant.off comes with CGAL's own examples; it is taken out of the package without installing it.
+fetch_elephant() {
+    [ -s build/data/elephant.off ] && return 0
+    mkdir -p build/data
+    (
+        cd build/data
+        apt-get download -qq libcgal-demo
+        dpkg-deb -x libcgal-demo_*.deb package
+        tar -xzOf package/usr/share/doc/libcgal-demo/data.tar.gz data/meshes/elephant.off >elephant.off.part
+        mv elephant.off.part elephant.off
+        rm -rf package libcgal-demo_*.deb
+    )
+}
+
+case "${1:-}" in
+demo)
+    install_missing $build_packages
+    cmake --preset default
+    cmake --build build --target springfit
+    fetch_elephant
+    build/bin/springfit fit build/data/elephant.off --young 5e4 --poisson 0.45 --density 1000 \
+        --material neo-hookean --nodes 2000 --out out/elephant
+    ;;
+test)
+    install_missing $build_packages $test_packages
+    cmake --preset default
+    cmake --build build
+    ctest --test-dir build --output-on-failure -j "$(nproc)"
+    ;;
+*)
+    echo "usage: sh cmake/quickstart.sh demo|test" >&2
+    exit 2
+    ;;
+esac

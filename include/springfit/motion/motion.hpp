@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include <springfit/motion/state.hpp>
+
+namespace springfit {
+
+/// A recorded motion: positions, velocities, accelerations and external forces at the nodes, frame by frame.
+///
+/// A static equilibrium is a motion of one frame at rest.
+template <int Dim, std::floating_point ScalarType>
+struct Motion {
+    static constexpr int dimension = Dim;
+    using Scalar = ScalarType;
+
+    std::string name;                   ///< of the load case
+    Points<Dim, Scalar> rest_positions; ///< [Dim x n_nodes], m
+    std::vector<int> clamped;           ///< nodes whose motion is prescribed, ascending
+
+    std::vector<Scalar> times;                       ///< [n_frames], s
+    std::vector<Points<Dim, Scalar>> positions;      ///< n_frames of [Dim x n_nodes], m
+    std::vector<Points<Dim, Scalar>> velocities;     ///< m/s
+    std::vector<Points<Dim, Scalar>> accelerations;  ///< m/s^2
+    std::vector<Points<Dim, Scalar>> external_forces; ///< N
+
+    [[nodiscard]] Index n_nodes() const { return rest_positions.cols(); }
+    [[nodiscard]] Index n_frames() const { return static_cast<Index>(times.size()); }
+};
+
+/// Throws InvalidArgument unless every frame holds every array at full size with finite values and times increase.
+template <int Dim, std::floating_point Scalar>
+void validate(const Motion<Dim, Scalar>& motion) {
+    const auto check = [&](const std::vector<Points<Dim, Scalar>>& frames, std::string_view name) {
+        require(static_cast<Index>(frames.size()) == motion.n_frames(), name, text(motion.n_frames(), " frames"),
+                frames.size());
+        for (std::size_t t = 0; t < frames.size(); ++t) {
+            require(frames[t].cols() == motion.n_nodes(), name, text(motion.n_nodes(), " nodes"),
+                    text(frames[t].cols(), " in frame ", t));
+            require(frames[t].allFinite(), name, "finite values", text("a value that is not finite in frame ", t));
+        }
+    };
+    check(motion.positions, "positions");
+    check(motion.velocities, "velocities");
+    check(motion.accelerations, "accelerations");
+    check(motion.external_forces, "external_forces");
+    for (std::size_t t = 1; t < motion.times.size(); ++t) {
+        require(motion.times[t] > motion.times[t - 1], "times", "increasing values",
+                text(motion.times[t], " after ", motion.times[t - 1]));
+    }
+}
+
+} // namespace springfit
