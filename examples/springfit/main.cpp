@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The command-line program: `springfit fit` and `springfit simulate`.
+
+#include <cstdio>
+#include <exception>
+
+#include <CLI/CLI.hpp>
+
+#include <springfit/core/error.hpp>
+#include <springfit/core/version.hpp>
+
+#include "commands.hpp"
+#include "interrupt.hpp"
+
+namespace {
+
+/// CLI11 does not know std::optional here: an option that keeps whether it was given.
+template <class Value>
+CLI::Option* add_optional(CLI::App& app, const std::string& name, std::optional<Value>& target, const std::string& help) {
+    return app.add_option_function<Value>(name, [&target](const Value& value) { target = value; }, help);
+}
+
+void declare_fit(CLI::App& app, program::FitOptions& options) {
+    app.add_option("INPUT", options.input,
+                   "closed surface (.off .obj .stl .ply), outline (.poly .wkt), mesh (.msh .mesh .node .vtk), or a "
+                   "recorded motion (.xdmf .h5)")
+        ->required();
+    app.add_option("--young", options.young, "Young's modulus, Pa")->required();
+    app.add_option("--poisson", options.poisson, "Poisson's ratio, in (-1, 0.5)")->required();
+    app.add_option("--density", options.density, "density, kg/m^3")->required();
+    app.add_option("--out", options.out, "folder for model.json, report.json, motion.h5, motion.xdmf")->required();
+
+    const std::string reference = "Reference simulation";
+    app.add_option("--material", options.material, "material of the FEM reference")
+        ->check(CLI::IsMember({"linear", "corotated", "st-venant-kirchhoff", "neo-hookean"}))
+        ->capture_default_str()
+        ->group(reference);
+    add_optional(app, "--element", options.element,
+                 "tet4, tet4-mean-dilatation or tet10 for solids; tri3, tri3-mean-dilatation or tri6 for plane bodies")
+        ->check(CLI::IsMember({"tet4", "tet4-mean-dilatation", "tet10", "tri3", "tri3-mean-dilatation", "tri6"}))
+        ->group(reference);
+    add_optional(app, "--thickness", options.thickness, "thickness of a plane body or membrane, m (default 1)")
+        ->group(reference);
+    add_optional(app, "--damping-ratio", options.damping_ratio,
+                 "damping of the body's slowest motion, as a part of critical (default 0.05)")
+        ->group(reference);
+    app.add_option("--reference", options.references,
+                   "recorded motion of the same nodes (.xdmf .h5), in place of the FEM; may be given several times")
+        ->group(reference);
+
+    const std::string mesh = "Mesh";
+    auto* cell_size = add_optional(app, "--cell-size", options.cell_size, "size of the cells, m")->group(mesh);
+    add_optional(app, "--nodes", options.nodes, "number of nodes to aim at (default 1000)")
+        ->excludes(cell_size)
+        ->group(mesh);
+    app.add_flag("--fill-holes", options.fill_holes, "close small holes of the surface")->group(mesh);
+
+    const std::string cases = "Load cases";
+    app.add_option("--clamp", options.clamps,
+                   "side of the bounding box whose nodes are held, as y-min or x-max:0.1 (the part of the box's extent; "
+                   "default 0.05); may be given several times (default y-min)")
+        ->group(cases);
+    add_optional(app, "--training-cases", options.training_cases, "load cases the fit sees (default 6)")->group(cases);
+    add_optional(app, "--held-out-cases", options.held_out_cases, "load cases it never sees (default 3)")->group(cases);
+    add_optional(app, "--frames", options.frames, "frames of each recorded motion (default 40)")->group(cases);
+    add_optional(app, "--deformation", options.deformation,
+                 "displacement the loads aim at, as a part of the body's size (default 0.05)")
+        ->group(cases);
+    app.add_option("--seed", options.seed, "seed of everything random")->capture_default_str()->group(cases);
+
+    const std::string fit = "Springs";
+    app.add_option("--method", options.method, "auto scores all methods on held-out motion and returns the best")
+        ->check(CLI::IsMember({"auto", "dominant-term", "exact", "closed-form"}))
+        ->capture_default_str()
+        ->group(fit);
+    app.add_option("--damping", options.damping,
+                   "proportional to stiffness, a ratio of critical (2 zeta sqrt(k (m_i + m_j))), or fitted")
+        ->check(CLI::IsMember({"proportional", "ratio", "fitted"}))
+        ->capture_default_str()
+        ->group(fit);
+    app.add_flag("--second-ring", options.second_ring, "springs between opposite vertices of neighbouring cells, too")
+        ->group(fit);
+    app.add_option("--threads", options.threads, "threads, 0 for all")->capture_default_str()->group(fit);
+}
+
+void declare_simulate(CLI::App& app, program::SimulateOptions& options) {
+    app.add_option("MODEL", options.model, "a model.json")->required();
+    app.add_option("--out", options.out, "folder for motion.h5 and motion.xdmf")->required();
+    app.add_option_function<std::vector<double>>(
+           "--gravity", [&options](const std::vector<double>& g) { options.gravity = g; },
+           "acceleration of the whole body, m/s^2, one number per dimension (default 0,-9.81[,0])")
+        ->delimiter(',');
+    app.add_option("--duration", options.duration, "time to simulate, s")->capture_default_str();
+    app.add_option("--frames", options.frames, "frames to write")->capture_default_str();
+    app.add_option("--integrator", options.integrator, "explicit (symplectic Euler) or implicit (implicit Euler)")
+        ->check(CLI::IsMember({"explicit", "implicit"}))
+        ->capture_default_str();
+    add_optional(app, "--time-step", options.time_step,
+                 "longest step, s (default: the stable step, or the time between frames for implicit)");
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app{"springfit: mass-spring models calibrated against a reference simulation"};
+    app.set_version_flag("--version", SPRINGFIT_VERSION_STRING);
+    app.require_subcommand(1);
+    app.get_formatter()->column_width(32);
+
+    program::FitOptions fit_options;
+    program::SimulateOptions simulate_options;
+    auto* fit = app.add_subcommand("fit", "derive stiffness, mass and damping of a mass-spring model");
+    auto* simulate = app.add_subcommand("simulate", "step a fitted model and write its motion");
+    declare_fit(*fit, fit_options);
+    declare_simulate(*simulate, simulate_options);
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& request) { // --help, --version
+        return app.exit(request);
+    } catch (const CLI::ParseError& error) {
+        std::fprintf(stderr, "springfit: %s\n", error.what());
+        return 2;
+    }
+    program::watch_for_interrupt();
+    try {
+        return fit->parsed() ? program::run_fit(fit_options) : program::run_simulate(simulate_options);
+    } catch (const springfit::InvalidArgument& error) {
+        std::fprintf(stderr, "springfit: %s\n", error.what());
+        return 2;
+    } catch (const springfit::FileError& error) {
+        std::fprintf(stderr, "springfit: %s\n", error.what());
+        return 2;
+    } catch (const program::Interrupted&) {
+        std::fprintf(stderr, "springfit: interrupted before there was a result; nothing was written\n");
+        return program::exit_interrupted;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "springfit: internal error: %s\n", error.what());
+        return 1;
+    }
+}

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace program {
+
+/// What `springfit fit` was asked for. Values left out are chosen from the body.
+struct FitOptions {
+    std::string input;
+    std::vector<std::string> references; ///< recorded motions instead of the FEM
+    std::string out;
+
+    double young = 0;                 ///< Pa
+    double poisson = 0;               ///< -
+    double density = 0;               ///< kg/m^3
+    std::optional<double> thickness;  ///< m, plane bodies and membranes
+    std::string material = "neo-hookean";
+    std::optional<std::string> element;
+    std::optional<double> damping_ratio; ///< of the body's slowest motion
+
+    std::optional<double> cell_size; ///< m
+    std::optional<int> nodes;
+    bool fill_holes = false;
+    std::vector<std::string> clamps;
+
+    std::string method = "auto";
+    std::string damping = "proportional";
+    bool second_ring = false;
+
+    std::optional<int> training_cases;
+    std::optional<int> held_out_cases;
+    std::optional<int> frames;
+    std::optional<double> deformation; ///< largest displacement wanted, as a part of the body's size
+    unsigned seed = 1;
+    int threads = 0;
+};
+
+/// What `springfit simulate` was asked for.
+struct SimulateOptions {
+    std::string model;
+    std::string out;
+    std::optional<std::vector<double>> gravity; ///< m/s^2
+    double duration = 2;                        ///< s
+    int frames = 100;
+    std::string integrator = "explicit";
+    std::optional<double> time_step; ///< s
+};
+
+} // namespace program

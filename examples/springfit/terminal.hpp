@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include <springfit/core/progress.hpp>
+
+namespace program {
+
+/// Shows one long stage on the terminal: a bar with the time left, or plain lines where the output is not a terminal.
+/// Its callback also carries the user's Ctrl-C to the library.
+class Stage {
+public:
+    explicit Stage(std::string name);
+    ~Stage();
+    Stage(const Stage&) = delete;
+    Stage& operator=(const Stage&) = delete;
+
+    /// Progress of part `part` of `parts` equal parts of this stage.
+    [[nodiscard]] springfit::ProgressCallback callback(int part = 0, int parts = 1);
+
+    /// Seconds since the stage began.
+    [[nodiscard]] double seconds() const;
+
+private:
+    void show(double fraction);
+
+    std::string m_name;
+    std::chrono::steady_clock::time_point m_start;
+    std::chrono::steady_clock::time_point m_shown;
+    double m_fraction = 0;
+    bool m_terminal;
+};
+
+} // namespace program
