@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+#include <springfit/io/json.hpp>
+
+namespace springfit::io {
+
+namespace detail {
+
+/// The whole of a file. Throws FileError where it is missing, a folder, or cannot be read.
+[[nodiscard]] inline std::string read_text(const std::filesystem::path& path) {
+    std::error_code error;
+    if (!std::filesystem::exists(path, error)) {
+        throw FileError(path.string(), "no such file");
+    }
+    if (std::filesystem::is_directory(path, error)) {
+        throw FileError(path.string(), "is a folder, not a file");
+    }
+    std::ifstream stream(path, std::ios::binary);
+    std::string content{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    if (!stream) {
+        throw FileError(path.string(), text("cannot be read: ", reason(errno)));
+    }
+    return content;
+}
+
+[[nodiscard]] inline bool goes_on_one_line(const Json& value) {
+    if (value.is_array()) {
+        return std::all_of(value.begin(), value.end(), goes_on_one_line);
+    }
+    return !value.is_object() && !value.is_string();
+}
+
+inline void append_json(std::string& result, const Json& value, int depth) {
+    const auto members = value.is_object() || (value.is_array() && !goes_on_one_line(value));
+    if (!members || value.empty()) {
+        result += value.dump();
+        return;
+    }
+    const std::string indent(static_cast<std::size_t>(depth + 1) * 2, ' ');
+    result += value.is_object() ? "{" : "[";
+    bool first = true;
+    for (const auto& [key, member] : value.items()) {
+        result += first ? "\n" : ",\n";
+        first = false;
+        result += indent;
+        if (value.is_object()) {
+            result += Json(key).dump() + ": ";
+        }
+        append_json(result, member, depth + 1);
+    }
+    result += "\n" + indent.substr(2) + (value.is_object() ? "}" : "]");
+}
+
+} // namespace detail
+
+inline Json read_json(const std::filesystem::path& path) {
+    const std::string content = detail::read_text(path);
+    try {
+        return Json::parse(content);
+    } catch (const Json::parse_error& error) {
+        const auto end = content.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, content.size()));
+        const auto line = 1 + std::count(content.begin(), end, '\n');
+        const std::string what = error.what();
+        const auto cause = what.rfind("syntax error");
+        throw FileError(path.string(), static_cast<long>(line),
+                        text("not JSON: ", cause == std::string::npos ? what : what.substr(cause)));
+    } catch (const Json::out_of_range& error) { // a number beyond the range of double
+        throw FileError(path.string(), text("not usable: ", error.what()));
+    }
+}
+
+inline std::string json_text(const Json& value) {
+    std::string result;
+    detail::append_json(result, value, 0);
+    result += '\n';
+    return result;
+}
+
+inline JsonPlace JsonPlace::member(std::string_view key) const {
+    if (!m_value->is_object()) {
+        refuse("an object", found());
+    }
+    const auto member = m_value->find(std::string(key));
+    const auto pointer = text(m_pointer, '/', key);
+    if (member == m_value->end()) {
+        throw FileError(m_file, text(pointer, ": is missing"));
+    }
+    return {*member, m_file, pointer};
+}
+
+inline JsonPlace JsonPlace::element(std::size_t index) const {
+    return {(*m_value)[index], m_file, text(m_pointer, '/', index)};
+}
+
+inline std::size_t JsonPlace::array_size(std::string_view expected, std::ptrdiff_t expected_size) const {
+    if (!m_value->is_array() || (expected_size >= 0 && m_value->size() != static_cast<std::size_t>(expected_size))) {
+        refuse(expected, found());
+    }
+    return m_value->size();
+}
+
+inline std::string JsonPlace::string() const {
+    if (!m_value->is_string()) {
+        refuse("a text", found());
+    }
+    return m_value->get<std::string>();
+}
+
+inline double JsonPlace::number() const {
+    if (!m_value->is_number()) {
+        refuse("a number", found());
+    }
+    return m_value->get<double>();
+}
+
+inline int JsonPlace::index_below(std::ptrdiff_t limit) const {
+    const bool accepted = m_value->is_number_integer() && *m_value >= 0 && *m_value < limit;
+    if (!accepted) {
+        refuse(text("a whole number in [0, ", limit, ")"), found());
+    }
+    return m_value->get<int>();
+}
+
+inline void JsonPlace::refuse(std::string_view expected, std::string_view found) const {
+    throw FileError(m_file, text(m_pointer.empty() ? "/" : m_pointer, ": expected ", expected, ", found ", found));
+}
+
+inline std::string JsonPlace::found() const {
+    if (m_value->is_array()) {
+        return text("an array of ", m_value->size());
+    }
+    return m_value->is_object() ? "an object" : m_value->dump();
+}
+
+} // namespace springfit::io

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include <springfit/io/model_json.hpp>
+
+namespace springfit::io {
+
+namespace detail {
+
+inline constexpr std::string_view model_format = "springfit-model";
+inline constexpr int model_version = 1;
+
+/// The JSON pointer of the first number that is not finite; empty where there is none.
+[[nodiscard]] inline std::string first_not_finite(const Json& value, const std::string& pointer = {}) {
+    if (value.is_number_float()) {
+        return std::isfinite(value.get<double>()) ? std::string{} : pointer;
+    }
+    if (value.is_structured()) {
+        for (const auto& [key, member] : value.items()) {
+            if (auto found = first_not_finite(member, pointer + "/" + key); !found.empty()) {
+                return found;
+            }
+        }
+    }
+    return {};
+}
+
+/// Rows of JSON numbers, one per column of the matrix.
+template <class Matrix>
+[[nodiscard]] Json columns_to_json(const Matrix& matrix) {
+    Json result = Json::array();
+    for (Index c = 0; c < matrix.cols(); ++c) {
+        Json column = Json::array();
+        for (Index r = 0; r < matrix.rows(); ++r) {
+            if constexpr (std::floating_point<typename Matrix::Scalar>) {
+                column.push_back(static_cast<double>(matrix(r, c)));
+            } else {
+                column.push_back(matrix(r, c));
+            }
+        }
+        result.push_back(std::move(column));
+    }
+    return result;
+}
+
+template <std::floating_point Scalar>
+[[nodiscard]] Json values_to_json(const Values<Scalar>& values) {
+    Json result = Json::array();
+    for (Index i = 0; i < values.size(); ++i) {
+        result.push_back(static_cast<double>(values(i)));
+    }
+    return result;
+}
+
+enum class Range { any, not_negative, positive };
+
+template <std::floating_point Scalar>
+[[nodiscard]] Scalar read_number(const JsonPlace& place, Range range) {
+    const auto value = static_cast<Scalar>(place.number());
+    const bool in_range = range == Range::any || (range == Range::positive ? value > 0 : value >= 0);
+    if (!(in_range && std::isfinite(value))) {
+        place.refuse(range == Range::any        ? "a finite number"
+                     : range == Range::positive ? "a positive number"
+                                                : "a number not below 0",
+                     place.found());
+    }
+    return value;
+}
+
+template <std::floating_point Scalar>
+[[nodiscard]] Values<Scalar> read_values(const JsonPlace& place, Index size, std::string_view owner, Range range) {
+    (void)place.array_size(text("an array of ", size, ", one number per ", owner), size);
+    Values<Scalar> values(size);
+    for (Index i = 0; i < size; ++i) {
+        values(i) = read_number<Scalar>(place.element(static_cast<std::size_t>(i)), range);
+    }
+    return values;
+}
+
+inline void check_model_header(const Json& json, const std::string& file) {
+    const JsonPlace root(json, file);
+    const auto expect_text = [&](std::string_view key, std::string_view expected) {
+        const JsonPlace place = root.member(key);
+        if (place.string() != expected) {
+            place.refuse(text('"', expected, '"'), place.found());
+        }
+    };
+    expect_text("format", model_format);
+    const JsonPlace version = root.member("version");
+    if (version.value() != model_version) {
+        version.refuse(text(model_version), version.found());
+    }
+    expect_text("units", "SI");
+    expect_text("damping_law", "axial");
+}
+
+template <int Dim, std::floating_point Scalar>
+[[nodiscard]] SpringNetwork<Dim, Scalar> read_network(const JsonPlace& nodes, const JsonPlace& springs) {
+    SpringNetwork<Dim, Scalar> network;
+    const JsonPlace positions = nodes.member("rest_position");
+    const auto n_nodes = static_cast<Index>(positions.array_size("an array, one position per node"));
+    network.rest_positions.resize(Dim, n_nodes);
+    for (Index i = 0; i < n_nodes; ++i) {
+        const JsonPlace position = positions.element(static_cast<std::size_t>(i));
+        (void)position.array_size(text("an array of ", Dim, ", the coordinates"), Dim);
+        for (int d = 0; d < Dim; ++d) {
+            network.rest_positions(d, i) =
+                read_number<Scalar>(position.element(static_cast<std::size_t>(d)), Range::any);
+        }
+    }
+    network.mass = read_values<Scalar>(nodes.member("mass"), n_nodes, "node", Range::positive);
+
+    const JsonPlace ends = springs.member("nodes");
+    const auto n_springs = static_cast<Index>(ends.array_size("an array, one pair of nodes per spring"));
+    network.springs.resize(2, n_springs);
+    for (Index e = 0; e < n_springs; ++e) {
+        const JsonPlace pair = ends.element(static_cast<std::size_t>(e));
+        (void)pair.array_size("an array of 2, the ends of the spring", 2);
+        network.springs.col(e) << pair.element(0).index_below(n_nodes), pair.element(1).index_below(n_nodes);
+        if (network.springs(0, e) == network.springs(1, e)) {
+            pair.refuse("two different nodes", pair.value().dump());
+        }
+    }
+    const auto per_spring = [&](std::string_view key, Range range) {
+        return read_values<Scalar>(springs.member(key), n_springs, "spring", range);
+    };
+    network.stiffness = per_spring("stiffness", Range::not_negative);
+    network.rest_length = per_spring("rest_length", Range::positive);
+    network.damping = per_spring("damping", Range::not_negative);
+    return network;
+}
+
+} // namespace detail
+
+template <int Dim, std::floating_point Scalar>
+std::string model_text(const Model<Dim, Scalar>& model) {
+    const auto& network = model.network;
+    validate(network);
+    require(model.stable_time_step > 0 && std::isfinite(model.stable_time_step), "stable_time_step",
+            "a positive time step", model.stable_time_step);
+    for (std::size_t a = 0; a < model.fixed.size(); ++a) {
+        require(model.fixed[a] >= 0 && model.fixed[a] < network.n_nodes() &&
+                    (a == 0 || model.fixed[a] > model.fixed[a - 1]),
+                "fixed", text("ascending node numbers in [0, ", network.n_nodes(), ")"), model.fixed[a]);
+    }
+    require(model.provenance.is_object(), "provenance", "a JSON object", model.provenance.type_name());
+    const std::string not_finite = detail::first_not_finite(model.provenance);
+    require(not_finite.empty(), "provenance", "finite numbers", text("a value that is not finite at ", not_finite));
+
+    Json json;
+    json["format"] = detail::model_format;
+    json["version"] = detail::model_version;
+    json["dimension"] = Dim;
+    json["units"] = "SI";
+    json["damping_law"] = "axial";
+    json["nodes"]["rest_position"] = detail::columns_to_json(network.rest_positions);
+    json["nodes"]["mass"] = detail::values_to_json(network.mass);
+    json["nodes"]["fixed"] = model.fixed;
+    json["springs"]["nodes"] = detail::columns_to_json(network.springs);
+    json["springs"]["stiffness"] = detail::values_to_json(network.stiffness);
+    json["springs"]["rest_length"] = detail::values_to_json(network.rest_length);
+    json["springs"]["damping"] = detail::values_to_json(network.damping);
+    json["stable_time_step"] = static_cast<double>(model.stable_time_step);
+    json["provenance"] = model.provenance;
+    return json_text(json);
+}
+
+inline int model_dimension(const Json& json, const std::string& file) {
+    detail::check_model_header(json, file);
+    const JsonPlace dimension = JsonPlace(json, file).member("dimension");
+    if (dimension.value() != 2 && dimension.value() != 3) {
+        dimension.refuse("2 or 3", dimension.found());
+    }
+    return dimension.value().get<int>();
+}
+
+template <int Dim, std::floating_point Scalar>
+Model<Dim, Scalar> model_from_json(const Json& json, const std::string& file) {
+    const JsonPlace root(json, file);
+    if (const int dimension = model_dimension(json, file); dimension != Dim) {
+        root.member("dimension").refuse(text(Dim), text(dimension));
+    }
+    Model<Dim, Scalar> model;
+    const JsonPlace nodes = root.member("nodes");
+    model.network = detail::read_network<Dim, Scalar>(nodes, root.member("springs"));
+    const JsonPlace fixed = nodes.member("fixed");
+    for (std::size_t a = 0; a < fixed.array_size("an array of node numbers"); ++a) {
+        const JsonPlace place = fixed.element(a);
+        model.fixed.push_back(place.index_below(model.network.n_nodes()));
+        if (a > 0 && !(model.fixed[a] > model.fixed[a - 1])) {
+            place.refuse(text("a node number above ", model.fixed[a - 1]), place.found());
+        }
+    }
+    model.stable_time_step = detail::read_number<Scalar>(root.member("stable_time_step"), detail::Range::positive);
+    const JsonPlace provenance = root.member("provenance");
+    if (!provenance.value().is_object()) {
+        provenance.refuse("an object", provenance.found());
+    }
+    model.provenance = provenance.value();
+    return model;
+}
+
+} // namespace springfit::io

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "files.hpp"
+
+#include <cstring>
+#include <limits>
+
+#include "tolerance.hpp"
+#include <springfit/io/model_json.hpp>
+#include <springfit/io/report_json.hpp>
+
+using namespace springfit;
+using namespace springfit::io;
+using springfit::test::content;
+using springfit::test::file_error;
+using springfit::test::put;
+using springfit::test::ScratchFolder;
+
+namespace {
+
+/// Four nodes, three springs, values that decimal text does not hold exactly.
+template <int Dim, class Scalar>
+Model<Dim, Scalar> example() {
+    Model<Dim, Scalar> model;
+    auto& network = model.network;
+    network.rest_positions.resize(Dim, 4);
+    for (Index i = 0; i < network.rest_positions.size(); ++i) {
+        network.rest_positions(i) = static_cast<Scalar>(std::sin(1.0 + static_cast<double>(i))) / 3;
+    }
+    network.springs.resize(2, 3);
+    network.springs << 0, 1, 3, 1, 2, 0;
+    network.stiffness.resize(3);
+    network.stiffness << Scalar(0), Scalar(1) / 3, std::numeric_limits<Scalar>::max();
+    network.rest_length.resize(3);
+    network.rest_length << std::numeric_limits<Scalar>::denorm_min(), Scalar(0.1), Scalar(1e20);
+    network.damping.resize(3);
+    network.damping << Scalar(0), std::numeric_limits<Scalar>::min(), Scalar(2) / 7;
+    network.mass.resize(4);
+    network.mass << Scalar(1e-6), Scalar(0.1), Scalar(1) / 9, Scalar(1e6);
+    model.fixed = {0, 2};
+    model.stable_time_step = Scalar(1) / 1234;
+    model.provenance = {{"springfit", "0.1.0"}, {"method", "exact"}, {"material", {{"young", 5e4}}}};
+    return model;
+}
+
+/// The message with which the example is refused after `change`.
+template <class Change>
+std::string refusal(const Change& change) {
+    Json json = Json::parse(model_text(example<2, double>()));
+    change(json);
+    return file_error([&] { (void)model_from_json<2, double>(json, "model.json"); });
+}
+
+} // namespace
+
+TEST_CASE_TEMPLATE("a model reads back bit for bit", T, SPRINGFIT_TEST_SPACES) {
+    using Scalar = typename T::Scalar;
+    const ScratchFolder folder;
+    const auto model = example<T::dimension, Scalar>();
+    write_model(folder / "model.json", model);
+    CHECK(folder.names() == std::vector<std::string>{"model.json"});
+    CHECK(model_dimension(read_json(folder / "model.json"), "model.json") == T::dimension);
+    const auto read = read_model<T::dimension, Scalar>(folder / "model.json");
+    CHECK(read.network.rest_positions == model.network.rest_positions);
+    CHECK(read.network.springs == model.network.springs);
+    CHECK(read.network.stiffness == model.network.stiffness);
+    CHECK(read.network.rest_length == model.network.rest_length);
+    CHECK(read.network.damping == model.network.damping);
+    CHECK(read.network.mass == model.network.mass);
+    CHECK(read.fixed == model.fixed);
+    CHECK(read.stable_time_step == model.stable_time_step);
+    CHECK(read.provenance == model.provenance);
+    CHECK(model_text(read) == model_text(model));
+}
+
+TEST_CASE("random doubles read back bit for bit") {
+    std::uint64_t state = 12345;
+    Model<2, double> model = example<2, double>();
+    const Index n = 2000;
+    model.network.springs = NodePairs::Zero(2, n);
+    model.network.springs.row(1).setConstant(1);
+    model.network.rest_length.setOnes(n);
+    model.network.damping.setZero(n);
+    model.network.stiffness.resize(n);
+    for (Index e = 0; e < n; ++e) {
+        double value = -1;
+        while (!(value >= 0 && std::isfinite(value))) {
+            state = state * 6364136223846793005ULL + 1442695040888963407ULL;
+            std::memcpy(&value, &state, sizeof value);
+        }
+        model.network.stiffness(e) = value;
+    }
+    const auto read = model_from_json<2, double>(Json::parse(model_text(model)), "model.json");
+    CHECK(std::memcmp(read.network.stiffness.data(), model.network.stiffness.data(), sizeof(double) * 2000) == 0);
+}
+
+TEST_CASE("the text of a model is the contract's") {
+    Model<2, double> model;
+    model.network = {Points<2, double>{{0, 1}, {0, 0.5}}, NodePairs{{0}, {1}}, Values<double>{{2.5}}, Values<double>{{1}},
+                     Values<double>{{0}}, Values<double>{{1, 1}}};
+    model.fixed = {0};
+    model.stable_time_step = 0.25;
+    model.provenance["springfit"] = "0.1.0";
+    CHECK(model_text(model) == R"({
+  "format": "springfit-model",
+  "version": 1,
+  "dimension": 2,
+  "units": "SI",
+  "damping_law": "axial",
+  "nodes": {
+    "rest_position": [[0.0,0.0],[1.0,0.5]],
+    "mass": [1.0,1.0],
+    "fixed": [0]
+  },
+  "springs": {
+    "nodes": [[0,1]],
+    "stiffness": [2.5],
+    "rest_length": [1.0],
+    "damping": [0.0]
+  },
+  "stable_time_step": 0.25,
+  "provenance": {
+    "springfit": "0.1.0"
+  }
+}
+)");
+}
+
+TEST_CASE("a model that JSON cannot hold is refused by name and nothing is written") {
+    const ScratchFolder folder;
+    auto model = example<3, double>();
+    model.network.damping(1) = std::nan("");
+    CHECK_THROWS_WITH_AS(write_model(folder / "model.json", model),
+                         "damping: expected values not below 0, found nan at spring 1", InvalidArgument);
+    model = example<3, double>();
+    model.stable_time_step = std::numeric_limits<double>::infinity();
+    CHECK_THROWS_WITH_AS(write_model(folder / "model.json", model),
+                         "stable_time_step: expected a positive time step, found inf", InvalidArgument);
+    model = example<3, double>();
+    model.provenance["material"]["young"] = std::nan("");
+    CHECK_THROWS_WITH_AS(
+        write_model(folder / "model.json", model),
+        "provenance: expected finite numbers, found a value that is not finite at /material/young", InvalidArgument);
+    model = example<3, double>();
+    model.fixed = {2, 2};
+    CHECK_THROWS_AS(write_model(folder / "model.json", model), InvalidArgument);
+    CHECK(folder.names().empty());
+}
+
+TEST_CASE("what is missing or wrong in a model is named by its JSON pointer") {
+    const auto erased = [](const char* parent, const char* key) {
+        return refusal([&](Json& json) { json[Json::json_pointer(parent)].erase(key); });
+    };
+    for (const char* key : {"format", "version", "dimension", "units", "damping_law", "nodes", "springs",
+                            "stable_time_step", "provenance"}) {
+        CHECK(erased("", key) == std::string("model.json: /") + key + ": is missing");
+    }
+    for (const char* key : {"rest_position", "mass", "fixed"}) {
+        CHECK(erased("/nodes", key) == std::string("model.json: /nodes/") + key + ": is missing");
+    }
+    for (const char* key : {"nodes", "stiffness", "rest_length", "damping"}) {
+        CHECK(erased("/springs", key) == std::string("model.json: /springs/") + key + ": is missing");
+    }
+    const auto replaced = [](const char* pointer, const Json& value) {
+        return refusal([&](Json& json) { json[Json::json_pointer(pointer)] = value; });
+    };
+    CHECK(replaced("/format", "other") == "model.json: /format: expected \"springfit-model\", found \"other\"");
+    CHECK(replaced("/version", 2) == "model.json: /version: expected 1, found 2");
+    CHECK(replaced("/dimension", 4) == "model.json: /dimension: expected 2 or 3, found 4");
+    CHECK(replaced("/dimension", 3) == "model.json: /dimension: expected 2, found 3");
+    CHECK(replaced("/nodes", 3) == "model.json: /nodes: expected an object, found 3");
+    CHECK(replaced("/nodes/mass/1", nullptr) == "model.json: /nodes/mass/1: expected a number, found null");
+    CHECK(replaced("/nodes/mass/1", 0) == "model.json: /nodes/mass/1: expected a positive number, found 0");
+    CHECK(replaced("/nodes/mass", {1, 2}) ==
+          "model.json: /nodes/mass: expected an array of 4, one number per node, found an array of 2");
+    CHECK(replaced("/nodes/rest_position/3", {1, 2, 3}) ==
+          "model.json: /nodes/rest_position/3: expected an array of 2, the coordinates, found an array of 3");
+    CHECK(replaced("/nodes/fixed/1", 4) == "model.json: /nodes/fixed/1: expected a whole number in [0, 4), found 4");
+    CHECK(replaced("/nodes/fixed/1", 0) == "model.json: /nodes/fixed/1: expected a node number above 0, found 0");
+    CHECK(replaced("/springs/nodes/2/0", 1.5) ==
+          "model.json: /springs/nodes/2/0: expected a whole number in [0, 4), found 1.5");
+    CHECK(replaced("/springs/nodes/2/0", -1) ==
+          "model.json: /springs/nodes/2/0: expected a whole number in [0, 4), found -1");
+    CHECK(replaced("/springs/nodes/2", {1, 1}) == "model.json: /springs/nodes/2: expected two different nodes, found [1,1]");
+    CHECK(replaced("/springs/stiffness", {1}) ==
+          "model.json: /springs/stiffness: expected an array of 3, one number per spring, found an array of 1");
+    CHECK(replaced("/springs/stiffness/0", -2) ==
+          "model.json: /springs/stiffness/0: expected a number not below 0, found -2");
+    CHECK(replaced("/stable_time_step", "fast") == "model.json: /stable_time_step: expected a number, found \"fast\"");
+    CHECK(replaced("", 1) == "model.json: /: expected an object, found 1");
+}
+
+TEST_CASE("a file that is missing, no JSON or beyond the scalar is refused with its name and line") {
+    const ScratchFolder folder;
+    const std::string name = (folder / "model.json").string();
+    const auto message = [&] { return file_error([&] { (void)read_model<2, float>(name); }); };
+    CHECK(message() == name + ": no such file");
+    put(name, "{\n  \"format\": NaN\n}\n");
+    CHECK(message().starts_with(name + ":2: not JSON: syntax error"));
+    put(name, "");
+    CHECK(message().starts_with(name + ":1: not JSON: "));
+    put(name, "{\"format\": 1e999}");
+    CHECK(message().starts_with(name + ": not usable: "));
+    std::string large = model_text(example<2, double>());
+    put(name, large.replace(large.find("1000000.0"), 9, "1e200"));
+    CHECK(message() == name + ": /nodes/mass/3: expected a positive number, found 1e+200");
+    std::filesystem::remove(name);
+    std::filesystem::create_directory(name);
+    CHECK(message() == name + ": is a folder, not a file");
+}
+
+TEST_CASE("a report holds the contract's fields, and null for what is not finite") {
+    const ScratchFolder folder;
+    Report report;
+    report.status = Status::converged;
+    report.method = "van_gelder";
+    report.nodes = 12;
+    report.springs = 34;
+    report.seconds = 1.5;
+    report.stage_seconds = {{"mesh", 0.5}, {"fit", 1.0}};
+    report.held_out = {0.25, {{"van_gelder", 0.25}, {"exact", std::numeric_limits<double>::infinity()}}};
+    report.training = {0.125, {{"van_gelder", 0.125}, {"exact", 3.0}}};
+    report.warnings = {"softer than the closed form"};
+    report.detail = {{"seed", 7}, {"fit", {{"kkt", Json::array({1e-9, std::nan("")})}}}};
+
+    OutputGroup outputs;
+    write_report(outputs, folder / "report.json", report);
+    outputs.commit();
+    const Json json = read_json(folder / "report.json");
+    CHECK(json.at("status") == "converged");
+    CHECK(json.at("method") == "van_gelder");
+    CHECK(json.at("nodes") == 12);
+    CHECK(json.at("springs") == 34);
+    CHECK(json.at("seconds") == Json{{"total", 1.5}, {"stages", {{"mesh", 0.5}, {"fit", 1.0}}}});
+    CHECK(json.at("held_out").at("error") == 0.25);
+    CHECK(json.at("held_out").at("baselines").at("exact").is_null());
+    CHECK(json.at("training") == Json{{"error", 0.125}, {"baselines", {{"van_gelder", 0.125}, {"exact", 3.0}}}});
+    CHECK(json.at("detail").at("seed") == 7);
+    CHECK(json.at("detail").at("fit").at("kkt").at(1).is_null());
+    CHECK(json.at("warnings") == Json::array({"softer than the closed form",
+                                              "/held_out/baselines/exact is not finite (inf) and written as null",
+                                              "/detail/fit/kkt/1 is not finite (nan) and written as null"}));
+}
