@@ -87,6 +87,9 @@ template <int Dim, std::floating_point Scalar>
     }
     for (const auto& load : scenario.loads) {
         const Scalar factor = load.amplitude ? load.amplitude(time) : Scalar(1);
+        if (factor == 0) {
+            continue;
+        }
         for (std::size_t a = 0; a < load.nodes.size(); ++a) {
             forces.col(load.nodes[a]) += factor * load.forces.col(static_cast<Index>(a));
         }
