@@ -70,6 +70,8 @@ public:
 
     void set_zero() { m_matrix.coeffs().setZero(); }
 
+    void scale(Scalar factor) { m_matrix.coeffs() *= factor; }
+
     /// Adds a dense symmetric block `[Dim * size x Dim * size]` at the nodes of a clique.
     template <class Block>
     void add(Index clique, const Block& block) {
