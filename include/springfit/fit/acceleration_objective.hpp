@@ -63,7 +63,7 @@ public:
         }
         m_seen_free.assign(static_cast<std::size_t>(network.n_nodes()), false);
         index_springs(network);
-        m_batch = detail::FrameBatch<Dim>(network.n_nodes(), m_uses_velocity);
+        m_batch = detail::FrameBatch<Dim, Scalar>(network.n_nodes(), m_uses_velocity);
     }
 
     /// Adds all frames of a motion, times `weight`. Throws InvalidArgument unless it is a valid motion of as many nodes.
@@ -123,10 +123,10 @@ private:
         return root_weights;
     }
 
-    template <class Array>
-    void push(const Array& positions, const Array& velocities, const Array& accelerations, const Array& forces,
+    void push(const Points<Dim, Scalar>& positions, const Points<Dim, Scalar>& velocities,
+              const Points<Dim, Scalar>& accelerations, const Points<Dim, Scalar>& forces,
               const Values<double>& root_weights) {
-        m_batch.push(positions, velocities, accelerations, forces, m_mass, root_weights);
+        m_batch.push(positions, velocities, accelerations, forces, root_weights);
         if (m_batch.full()) {
             flush();
         }
@@ -134,7 +134,7 @@ private:
 
     void index_springs(const SpringNetwork<Dim, Scalar>& network);
     void flush();
-    void add_node(Index node, Eigen::Matrix<double, detail::FrameBatch<Dim>::rows, Eigen::Dynamic>& equations);
+    void add_node(Index node, Eigen::Matrix<double, detail::FrameBatch<Dim, Scalar>::rows, Eigen::Dynamic>& equations);
     void identify(FitProblem& problem) const;
 
     AccelerationOptions<Scalar> m_options;
@@ -152,7 +152,7 @@ private:
     std::vector<int> m_columns;        ///< numbers of the unknowns at the node, ascending
     std::vector<Index> m_gram_begin;   ///< per node, its packed lower triangle of [A y]'[A y]
     std::vector<double> m_gram;
-    detail::FrameBatch<Dim> m_batch;
+    detail::FrameBatch<Dim, Scalar> m_batch;
 };
 
 /// The fit of the springs of `network` to `motions`, each with the same weight, ready for any solver.

@@ -40,24 +40,33 @@ void validate(const SpringNetwork<Dim, Scalar>& network) {
         require(values.size() == springs, name, text(springs, " values, one per spring"), values.size());
         for (Index e = 0; e < springs; ++e) {
             const bool accepted = positive ? values(e) > 0 : values(e) >= 0;
-            require(accepted && std::isfinite(values(e)), name, positive ? "positive values" : "values not below 0",
-                    text(values(e), " at spring ", e));
+            if (!(accepted && std::isfinite(values(e)))) {
+                throw InvalidArgument(name, positive ? "positive values" : "values not below 0",
+                                      text(values(e), " at spring ", e));
+            }
         }
     };
     check_springs(network.stiffness, "stiffness", false);
     check_springs(network.rest_length, "rest_length", true);
     check_springs(network.damping, "damping", false);
     for (Index i = 0; i < nodes; ++i) {
-        require(network.mass(i) > 0 && std::isfinite(network.mass(i)), "mass", "positive values",
-                text(network.mass(i), " at node ", i));
-        require(network.rest_positions.col(i).allFinite(), "rest_positions", "finite coordinates", text("node ", i));
+        if (!(network.mass(i) > 0 && std::isfinite(network.mass(i)))) {
+            throw InvalidArgument("mass", "positive values", text(network.mass(i), " at node ", i));
+        }
+        if (!network.rest_positions.col(i).allFinite()) {
+            throw InvalidArgument("rest_positions", "finite coordinates", text("node ", i));
+        }
     }
     for (Index e = 0; e < springs; ++e) {
         const int i = network.springs(0, e);
         const int j = network.springs(1, e);
-        require(i >= 0 && j >= 0 && i < nodes && j < nodes, "springs", text("node numbers in [0, ", nodes, ")"),
-                text("spring ", e, " from ", i, " to ", j));
-        require(i != j, "springs", "two different ends", text("spring ", e, " from ", i, " to ", j));
+        if (!(i >= 0 && j >= 0 && i < nodes && j < nodes)) {
+            throw InvalidArgument("springs", text("node numbers in [0, ", nodes, ")"),
+                                  text("spring ", e, " from ", i, " to ", j));
+        }
+        if (i == j) {
+            throw InvalidArgument("springs", "two different ends", text("spring ", e, " from ", i, " to ", j));
+        }
     }
 }
 

@@ -75,8 +75,10 @@ void AccelerationObjective<Dim, Scalar>::flush() {
     if (m_batch.size() == 0) {
         return;
     }
+    m_execution.for_chunks(n_nodes(), nodes_per_chunk,
+                           [this](Index, Index begin, Index end) { m_batch.transpose(begin, end, m_mass); });
     m_execution.for_chunks(n_nodes(), nodes_per_chunk, [this](Index, Index begin, Index end) {
-        Eigen::Matrix<double, detail::FrameBatch<Dim>::rows, Eigen::Dynamic> equations;
+        Eigen::Matrix<double, detail::FrameBatch<Dim, Scalar>::rows, Eigen::Dynamic> equations;
         for (Index node = begin; node < end; ++node) {
             if ((m_batch.weight(node) > 0).any()) {
                 add_node(node, equations);
@@ -91,9 +93,9 @@ void AccelerationObjective<Dim, Scalar>::flush() {
 template <int Dim, std::floating_point Scalar>
     requires SpatialDimension<Dim>
 void AccelerationObjective<Dim, Scalar>::add_node(
-    Index node, Eigen::Matrix<double, detail::FrameBatch<Dim>::rows, Eigen::Dynamic>& equations) {
-    using Lanes = typename detail::FrameBatch<Dim>::Lanes;
-    constexpr int lanes = detail::FrameBatch<Dim>::lanes;
+    Index node, Eigen::Matrix<double, detail::FrameBatch<Dim, Scalar>::rows, Eigen::Dynamic>& equations) {
+    using Lanes = typename detail::FrameBatch<Dim, Scalar>::Lanes;
+    constexpr int lanes = detail::FrameBatch<Dim, Scalar>::lanes;
     const auto i = static_cast<std::size_t>(node);
     const Index n = m_column_begin[i + 1] - m_column_begin[i];
     if (equations.cols() < n + 1) {

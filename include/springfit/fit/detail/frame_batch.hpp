@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <vector>
+#include <array>
 
 #include <springfit/core/types.hpp>
 
@@ -11,7 +11,7 @@ namespace springfit::detail {
 ///
 /// Lanes are frames: node i has `Dim` runs of `lanes` numbers in each array. Always in double, whatever the data is in:
 /// the sums over frames are normal equations, whose rounding the fit amplifies by the condition number.
-template <int Dim>
+template <int Dim, std::floating_point Scalar>
 class FrameBatch {
 public:
     static constexpr int lanes = 32;
@@ -28,31 +28,43 @@ public:
     [[nodiscard]] int size() const { return m_size; }
     [[nodiscard]] bool full() const { return m_size == lanes; }
 
+    /// Adds a frame: what the springs must give is `m_i a_i - f_i`, and its square counts `root_weights(i)^2`.
+    void push(const Points<Dim, Scalar>& positions, const Points<Dim, Scalar>& velocities,
+              const Points<Dim, Scalar>& accelerations, const Points<Dim, Scalar>& forces,
+              const Values<double>& root_weights) {
+        Frame& frame = m_frames[static_cast<std::size_t>(m_size++)];
+        frame.positions = positions;
+        if (m_velocities.size() > 0) {
+            frame.velocities = velocities;
+        }
+        frame.accelerations = accelerations;
+        frame.forces = forces;
+        frame.root_weights = root_weights;
+    }
+
+    /// Lays the frames side by side, for nodes [begin, end).
+    void transpose(Index begin, Index end, const Values<double>& masses) {
+        for (int lane = 0; lane < m_size; ++lane) {
+            const Frame& frame = m_frames[static_cast<std::size_t>(lane)];
+            for (Index i = begin; i < end; ++i) {
+                for (int d = 0; d < Dim; ++d) {
+                    const Index at = i * rows + d * lanes + lane;
+                    m_positions(at) = static_cast<double>(frame.positions(d, i));
+                    m_loads(at) = masses(i) * static_cast<double>(frame.accelerations(d, i)) -
+                                  static_cast<double>(frame.forces(d, i));
+                    if (m_velocities.size() > 0) {
+                        m_velocities(at) = static_cast<double>(frame.velocities(d, i));
+                    }
+                }
+                m_weights(i * lanes + lane) = frame.root_weights(i);
+            }
+        }
+    }
+
     /// Forgets all frames.
     void clear() {
         m_size = 0;
         m_weights.setZero();
-    }
-
-    /// Adds a frame: what the springs must give is `m_i a_i - f_i`, and its square counts `root_weights(i)^2`.
-    template <class Positions, class Velocities, class Accelerations, class Forces>
-    void push(const Positions& positions, const Velocities& velocities, const Accelerations& accelerations,
-              const Forces& forces, const Values<double>& masses, const Values<double>& root_weights) {
-        const Index lane = m_size++;
-        for (Index i = 0; i < positions.cols(); ++i) {
-            const Index first = i * rows + lane;
-            for (int d = 0; d < Dim; ++d) {
-                m_positions(first + d * lanes) = static_cast<double>(positions(d, i));
-                m_loads(first + d * lanes) =
-                    masses(i) * static_cast<double>(accelerations(d, i)) - static_cast<double>(forces(d, i));
-            }
-            m_weights(i * lanes + lane) = root_weights(i);
-        }
-        for (Index i = 0; m_velocities.size() > 0 && i < positions.cols(); ++i) {
-            for (int d = 0; d < Dim; ++d) {
-                m_velocities(i * rows + d * lanes + lane) = static_cast<double>(velocities(d, i));
-            }
-        }
     }
 
     [[nodiscard]] ConstLanes position(Index node, int d) const { return run(m_positions, node * rows + d * lanes); }
@@ -61,11 +73,17 @@ public:
     [[nodiscard]] ConstLanes weight(Index node) const { return run(m_weights, node * lanes); }
 
 private:
+    struct Frame {
+        Points<Dim, Scalar> positions, velocities, accelerations, forces;
+        Values<double> root_weights;
+    };
+
     [[nodiscard]] static ConstLanes run(const Values<double>& values, Index first) {
         return ConstLanes(values.data() + first);
     }
 
     int m_size = 0;
+    std::array<Frame, lanes> m_frames;
     Values<double> m_positions, m_velocities, m_loads, m_weights;
 };
 

@@ -4,7 +4,8 @@
 #include <map>
 
 #include <springfit/fit/detail/indexed_heap.hpp>
-#include <springfit/fit/detail/one_pass.hpp>
+#include <springfit/fit/detail/node_estimate.hpp>
+#include <springfit/fit/dominant_term.hpp>
 
 namespace springfit {
 
