@@ -17,6 +17,7 @@ void on_interrupt(int signal) {
 } // namespace
 
 void watch_for_interrupt() {
+    pressed = 0;
     std::signal(SIGINT, on_interrupt);
     std::signal(SIGTERM, on_interrupt);
 }

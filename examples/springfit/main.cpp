@@ -31,13 +31,12 @@ void declare_fit(CLI::App& app, program::FitOptions& options) {
     app.add_option("--out", options.out, "folder for model.json, report.json, motion.h5, motion.xdmf")->required();
 
     const std::string reference = "Reference simulation";
-    app.add_option("--material", options.material, "material of the FEM reference")
+    add_optional(app, "--material", options.material, "material of the FEM reference (default neo-hookean)")
         ->check(CLI::IsMember({"linear", "corotated", "st-venant-kirchhoff", "neo-hookean"}))
-        ->capture_default_str()
         ->group(reference);
     add_optional(app, "--element", options.element,
-                 "tet4, tet4-mean-dilatation or tet10 for solids; tri3, tri3-mean-dilatation or tri6 for plane bodies")
-        ->check(CLI::IsMember({"tet4", "tet4-mean-dilatation", "tet10", "tri3", "tri3-mean-dilatation", "tri6"}))
+                 "tet4-mean-dilatation, tet4 or tet10; hex8; tri3 or tri6; quad4 (default: the first that fits the cells)")
+        ->check(CLI::IsMember({"tet4", "tet4-mean-dilatation", "tet10", "hex8", "tri3", "tri6", "quad4"}))
         ->group(reference);
     add_optional(app, "--thickness", options.thickness, "thickness of a plane body or membrane, m (default 1)")
         ->group(reference);
@@ -78,6 +77,7 @@ void declare_fit(CLI::App& app, program::FitOptions& options) {
         ->check(CLI::IsMember({"proportional", "ratio", "fitted"}))
         ->capture_default_str()
         ->group(fit);
+    add_optional(app, "--zeta", options.zeta, "zeta of --damping ratio (default 0.05)")->group(fit);
     app.add_flag("--second-ring", options.second_ring, "springs between opposite vertices of neighbouring cells, too")
         ->group(fit);
     app.add_option("--threads", options.threads, "threads, 0 for all")->capture_default_str()->group(fit);

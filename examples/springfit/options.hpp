@@ -18,7 +18,7 @@ struct FitOptions {
     double poisson = 0;               ///< -
     double density = 0;               ///< kg/m^3
     std::optional<double> thickness;  ///< m, plane bodies and membranes
-    std::string material = "neo-hookean";
+    std::optional<std::string> material;  ///< default neo-hookean
     std::optional<std::string> element;
     std::optional<double> damping_ratio; ///< of the body's slowest motion
 
@@ -29,6 +29,7 @@ struct FitOptions {
 
     std::string method = "auto";
     std::string damping = "proportional";
+    std::optional<double> zeta; ///< of `--damping ratio`
     bool second_ring = false;
 
     std::optional<int> training_cases;

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <variant>
+
+#include <springfit/mesh/mesh.hpp>
+#include <springfit/network/spring_network.hpp>
+
+#include "options.hpp"
+
+namespace program {
+
+/// A mesh of any kind of cell that the program reads or makes.
+using AnyMesh =
+    std::variant<springfit::Mesh<2, double, springfit::Tri3>, springfit::Mesh<2, double, springfit::Quad4>,
+                 springfit::Mesh<3, double, springfit::Tet4>, springfit::Mesh<3, double, springfit::Hex8>,
+                 springfit::Mesh<3, double, springfit::Tri3>>;
+
+[[nodiscard]] int dimension_of(const AnyMesh& mesh);
+
+/// Reads or makes the mesh of a surface, an outline or a mesh file; says on stderr what it did.
+/// Throws FileError or InvalidArgument.
+[[nodiscard]] AnyMesh read_mesh(const FitOptions& options);
+
+/// True for the file of a recorded motion.
+[[nodiscard]] bool is_motion_file(const std::string& path);
+
+/// The stiffness that a published formula gives every spring.
+struct ClosedFormResult {
+    std::string name;
+    springfit::Values<double> stiffness; ///< [n_springs], N/m
+    springfit::Index n_clamped = 0;      ///< negative values that were set to 0
+};
+
+/// A body as springs, whatever its cells are.
+template <int Dim>
+struct Discretisation {
+    springfit::SpringNetwork<Dim, double> network; ///< springs, rest lengths and masses; stiffness 0 as yet
+    std::vector<ClosedFormResult> closed_forms;    ///< all that hold for these cells
+    Eigen::MatrixXi cells;                         ///< corner nodes [corners x n_cells]
+    std::string cell_name;
+    std::vector<int> surface; ///< nodes on the boundary
+};
+
+template <int Dim>
+[[nodiscard]] Discretisation<Dim> discretise(const AnyMesh& mesh, const FitOptions& options);
+
+/// The nodes that the `--clamp` options name. Throws InvalidArgument for an unknown side or one that holds no node.
+template <int Dim>
+[[nodiscard]] std::vector<int> clamped_nodes(const std::vector<std::string>& clamps,
+                                             const springfit::Points<Dim, double>& rest_positions);
+
+} // namespace program

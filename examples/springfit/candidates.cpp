@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "candidates.hpp"
+
+#include <springfit/fit/acceleration_objective.hpp>
+#include <springfit/fit/dominant_term.hpp>
+#include <springfit/ipopt/exact.hpp>
+#include <springfit/network/damping.hpp>
+#include <springfit/score/motion_error.hpp>
+
+#include "interrupt.hpp"
+#include "terminal.hpp"
+
+namespace program {
+
+using namespace springfit;
+
+namespace {
+
+/// The damping rule that `--damping` names, for the stiffness that the network has.
+template <int Dim>
+void set_damping(SpringNetwork<Dim, double>& network, double beta, const FitOptions& options) {
+    network.damping = options.damping == "ratio" ? mass_stiffness_damping(network, options.zeta.value_or(0.05))
+                                                 : stiffness_proportional_damping(network, beta);
+}
+
+template <int Dim>
+double stiffness_sum(const SpringNetwork<Dim, double>& network) {
+    return network.stiffness.dot(network.rest_length.cwiseAbs2());
+}
+
+} // namespace
+
+template <int Dim>
+std::vector<Candidate<Dim>> make_candidates(const Discretisation<Dim>& body, const ReferenceCases<Dim>& cases,
+                                            const FitOptions& options, const Execution& execution) {
+    std::vector<Candidate<Dim>> candidates;
+    for (const auto& closed : body.closed_forms) {
+        Candidate<Dim> candidate;
+        candidate.name = closed.name;
+        candidate.network = body.network;
+        candidate.network.stiffness = closed.stiffness;
+        candidate.n_clamped = closed.n_clamped;
+        set_damping<Dim>(candidate.network, cases.stiffness_damping, options);
+        candidates.push_back(std::move(candidate));
+    }
+    if (options.method != "closed-form") {
+        // The closed form is the prior: what a spring gets that no motion excites.
+        const SpringNetwork<Dim, double> prior = candidates.front().network;
+        AccelerationOptions<double> how;
+        how.parameters.damping.fit = options.damping == "fitted";
+        if (options.damping == "proportional") {
+            how.parameters.proportional_damping = cases.stiffness_damping;
+        }
+        const FitProblem problem = [&] {
+            Stage stage("assemble objective");
+            AccelerationObjective<Dim, double> objective(prior, how, execution);
+            for (const auto& motion : cases.training.motions) {
+                objective.add(motion);
+            }
+            return objective.problem();
+        }();
+        const auto add = [&](const std::string& name, const auto& solve) {
+            Stage stage("fit " + name);
+            Candidate<Dim> candidate;
+            candidate.name = name;
+            candidate.network = prior;
+            candidate.fit = solve(stage.callback());
+            if (!usable(candidate.fit->status)) {
+                return;
+            }
+            apply(problem, *candidate.fit, candidate.network);
+            if (options.damping != "fitted") {
+                set_damping<Dim>(candidate.network, cases.stiffness_damping, options);
+            }
+            candidate.seconds = stage.seconds();
+            candidates.push_back(std::move(candidate));
+        };
+        if (options.method == "auto" || options.method == "dominant-term") {
+            add("dominant_term", [&](const ProgressCallback& progress) {
+                DominantTermOptions sweeps;
+                sweeps.execution = execution;
+                sweeps.progress = progress;
+                return dominant_term(problem, sweeps);
+            });
+        }
+        if ((options.method == "auto" || options.method == "exact") && !interrupted()) {
+            add("exact", [&](const ProgressCallback& progress) {
+                ipopt::ExactOptions exact;
+                exact.progress = progress;
+                return ipopt::exact(problem, exact);
+            });
+        }
+    }
+    for (auto& candidate : candidates) {
+        candidate.relative_stiffness = stiffness_sum(candidate.network) / stiffness_sum(candidates.front().network);
+    }
+    return candidates;
+}
+
+template <int Dim>
+void score(std::vector<Candidate<Dim>>& candidates, const ReferenceCases<Dim>& cases) {
+    Stage stage("score on motion");
+    const int parts = static_cast<int>(2 * candidates.size());
+    int part = 0;
+    for (auto& candidate : candidates) {
+        candidate.held_out = motion_error(candidate.network, cases.held_out.scenarios, cases.held_out.motions,
+                                          stage.callback(part++, parts))
+                                 .error;
+        candidate.training = motion_error(candidate.network, cases.training.scenarios, cases.training.motions,
+                                          stage.callback(part++, parts))
+                                 .error;
+    }
+}
+
+io::Json describe(const FitReport& fit) {
+    return {{"status", to_string(fit.status)},
+            {"objective_start", fit.objective_start},
+            {"objective", fit.objective},
+            {"iterations", fit.iterations},
+            {"kkt_residual", fit.kkt_residual},
+            {"at_lower_bound", fit.at_lower.size()},
+            {"at_upper_bound", fit.at_upper.size()},
+            {"not_identified", fit.not_identified.size()},
+            {"without_unknown", fit.without_unknown.size()}};
+}
+
+template std::vector<Candidate<2>> make_candidates<2>(const Discretisation<2>&, const ReferenceCases<2>&,
+                                                      const FitOptions&, const Execution&);
+template std::vector<Candidate<3>> make_candidates<3>(const Discretisation<3>&, const ReferenceCases<3>&,
+                                                      const FitOptions&, const Execution&);
+template void score<2>(std::vector<Candidate<2>>&, const ReferenceCases<2>&);
+template void score<3>(std::vector<Candidate<3>>&, const ReferenceCases<3>&);
+
+} // namespace program

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include <springfit/core/execution.hpp>
+#include <springfit/fit/problem.hpp>
+
+#include "cases.hpp"
+
+namespace program {
+
+/// A calibrated network with its errors on motion.
+template <int Dim>
+struct Candidate {
+    std::string name;
+    springfit::SpringNetwork<Dim, double> network;
+    std::optional<springfit::FitReport> fit; ///< empty for a closed form
+    springfit::Index n_clamped = 0;          ///< springs of a closed form that were negative and set to 0
+    double seconds = 0;
+    double held_out = 0;
+    double training = 0;
+    /// sum k l^2 beside that of the first closed form: below 1 the springs are softer in all.
+    double relative_stiffness = 1;
+};
+
+/// Every candidate that `options.method` asks for, closed forms first, unscored. A Ctrl-C ends it early with those that
+/// are there. Throws InvalidArgument where no closed form holds and one was asked for.
+template <int Dim>
+[[nodiscard]] std::vector<Candidate<Dim>> make_candidates(const Discretisation<Dim>& body,
+                                                          const ReferenceCases<Dim>& cases, const FitOptions& options,
+                                                          const springfit::Execution& execution);
+
+/// Fills in the errors of every candidate on both sets of load cases.
+template <int Dim>
+void score(std::vector<Candidate<Dim>>& candidates, const ReferenceCases<Dim>& cases);
+
+/// The report's part on one candidate.
+[[nodiscard]] springfit::io::Json describe(const springfit::FitReport& fit);
+
+} // namespace program

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cases.hpp"
+
+#include <cstdio>
+#include <numbers>
+
+#include <springfit/motion/load_cases.hpp>
+#include <springfit/motion/replay.hpp>
+#include <springfit/network/topology.hpp>
+
+#include "commands.hpp"
+#include "terminal.hpp"
+
+namespace program {
+
+using namespace springfit;
+
+namespace {
+
+/// What a case is called in the report.
+template <int Dim>
+io::Json names_of(const CaseSet<Dim>& set) {
+    io::Json names = io::Json::array();
+    for (const auto& motion : set.motions) {
+        names.push_back(motion.name);
+    }
+    return names;
+}
+
+} // namespace
+
+template <int Dim>
+std::vector<int> clamped_nodes(const std::vector<std::string>& clamps, const Points<Dim, double>& rest_positions) {
+    const Vector<Dim, double> low = rest_positions.rowwise().minCoeff();
+    const Vector<Dim, double> high = rest_positions.rowwise().maxCoeff();
+    std::vector<int> nodes;
+    for (const std::string& clamp : clamps) {
+        const std::string side = clamp.substr(0, clamp.find(':'));
+        const int axis = side.empty() ? -1 : side[0] - 'x';
+        const bool is_side = axis >= 0 && axis < Dim && (side.substr(1) == "-min" || side.substr(1) == "-max");
+        require(is_side, "--clamp", Dim == 2 ? "x-min, x-max, y-min or y-max" : "x-min, x-max, y-min, ... or z-max", clamp);
+        double part = 0.05;
+        if (side.size() < clamp.size()) {
+            const std::string number = clamp.substr(side.size() + 1);
+            std::size_t used = 0;
+            try {
+                part = std::stod(number, &used);
+            } catch (const std::exception&) {
+                used = 0;
+            }
+            require(used == number.size() && !number.empty() && part >= 0 && part < 1, "--clamp",
+                    "a part of the extent in [0, 1) after the colon", clamp);
+        }
+        const bool at_min = side.substr(2) == "min";
+        const double limit = part * (high(axis) - low(axis)) * (1 + 1e-12);
+        const std::size_t before = nodes.size();
+        for (Index i = 0; i < rest_positions.cols(); ++i) {
+            const double distance = at_min ? rest_positions(axis, i) - low(axis) : high(axis) - rest_positions(axis, i);
+            if (distance <= limit) {
+                nodes.push_back(static_cast<int>(i));
+            }
+        }
+        require(nodes.size() > before, "--clamp", "a side that holds nodes", text(clamp, ", which holds none"));
+    }
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    require(static_cast<Index>(nodes.size()) < rest_positions.cols(), "--clamp", "nodes left to move", "none");
+    return nodes;
+}
+
+template <int Dim>
+ReferenceCases<Dim> record_cases(const FemReference<Dim>& reference, const Discretisation<Dim>& body,
+                                 const FitOptions& options) {
+    const double deformation = options.deformation.value_or(0.05);
+    require(deformation > 0 && deformation < 1, "--deformation", "a part of the body's size in (0, 1)", deformation);
+    const double damping_ratio = options.damping_ratio.value_or(0.05);
+    require(damping_ratio >= 0 && damping_ratio < 1, "--damping-ratio", "a part of critical in [0, 1)", damping_ratio);
+
+    const auto& rest = body.network.rest_positions;
+    const double size = (rest.rowwise().maxCoeff() - rest.rowwise().minCoeff()).norm();
+    Body<Dim, double> loaded{rest, body.network.mass, body.surface, {}};
+    const auto clamps = options.clamps.empty() ? std::vector<std::string>{"y-min"} : options.clamps;
+    loaded.clamps.push_back({clamped_nodes<Dim>(clamps, rest), {}});
+    auto cases = random_loads(loaded, {.training = options.training_cases.value_or(6),
+                                       .held_out = options.held_out_cases.value_or(3),
+                                       .seed = options.seed});
+
+    // Every case is scaled to the same largest displacement; the slowest answer sets the time.
+    std::vector<Scenario<Dim, double>> all = cases.training;
+    all.insert(all.end(), cases.held_out.begin(), cases.held_out.end());
+    const auto responses = reference.respond(all);
+    double slowest = std::numeric_limits<double>::infinity();
+    for (const auto& response : responses) {
+        slowest = std::min(slowest, response.frequency);
+    }
+    const double period = 2 * std::numbers::pi / slowest;
+    const double duration = 1.5 * period;
+    const auto amplitude = ramp_and_release(0.3 * duration, 0.6 * duration);
+    std::size_t next = 0;
+    for (auto* set : {&cases.training, &cases.held_out}) {
+        for (auto& scenario : *set) {
+            set_loading(scenario, deformation * size / responses[next++].largest_displacement, amplitude);
+        }
+    }
+
+    ReferenceCases<Dim> result;
+    result.stiffness_damping = 2 * damping_ratio / slowest;
+    RecordOptions<double> how;
+    how.frames = options.frames.value_or(40);
+    require(how.frames >= 3, "--frames", "at least 3", how.frames);
+    how.dt = duration / (how.frames - 1);
+
+    const int n_cases = static_cast<int>(cases.training.size() + cases.held_out.size());
+    Stage stage("record " + reference.element());
+    int done = 0;
+    const auto record_set = [&](const std::vector<Scenario<Dim, double>>& scenarios, CaseSet<Dim>& set) {
+        for (const auto& scenario : scenarios) {
+            how.progress = stage.callback(done++, n_cases);
+            auto recording = reference.record(scenario, result.stiffness_damping, how);
+            if (recording.status == Status::interrupted) {
+                result.interrupted = true;
+                return;
+            }
+            if (recording.status != Status::converged) {
+                result.warnings.push_back(text("load case ", scenario.name, ": the reference ended as ",
+                                               to_string(recording.status), " after ", recording.motion.n_frames(),
+                                               " of ", how.frames, " frames; a smaller --deformation may help"));
+            }
+            if (recording.motion.n_frames() >= 3) {
+                set.scenarios.push_back(scenario);
+                set.motions.push_back(std::move(recording.motion));
+            }
+        }
+    };
+    // Held-out cases first: without them no model can be judged.
+    record_set(cases.held_out, result.held_out);
+    if (!result.interrupted) {
+        record_set(cases.training, result.training);
+    }
+    if (result.held_out.motions.empty() || result.training.motions.empty()) {
+        if (result.interrupted) {
+            throw Interrupted();
+        }
+        throw InvalidArgument("reference", "at least one recorded training and held-out case", "none that converged");
+    }
+    result.description = {{"kind", "fem"},
+                          {"element", reference.element()},
+                          {"material", options.material.value_or("neo-hookean")},
+                          {"training_cases", names_of(result.training)},
+                          {"held_out_cases", names_of(result.held_out)},
+                          {"frames", how.frames},
+                          {"frame_time_step", how.dt},
+                          {"period", period},
+                          {"stiffness_damping", result.stiffness_damping},
+                          {"deformation", deformation},
+                          {"clamps", clamps}};
+    return result;
+}
+
+template <int Dim>
+ReferenceCases<Dim> split_recorded(std::vector<Motion<Dim, double>> motions, const Discretisation<Dim>& body,
+                                   const FitOptions& options) {
+    ReferenceCases<Dim> result;
+    for (auto& motion : motions) {
+        require(motion.n_nodes() == body.network.n_nodes(), text("reference ", motion.name),
+                text(body.network.n_nodes(), " nodes, as in the mesh"), motion.n_nodes());
+        require(motion.n_frames() >= 4, text("reference ", motion.name), "at least 4 frames", motion.n_frames());
+        if (!options.clamps.empty()) {
+            motion.clamped = clamped_nodes<Dim>(options.clamps, body.network.rest_positions);
+        }
+    }
+    const auto keep = [](CaseSet<Dim>& set, Motion<Dim, double> motion) {
+        set.scenarios.push_back(replay(motion));
+        set.motions.push_back(std::move(motion));
+    };
+    if (motions.size() == 1) {
+        const Index split = 2 * motions.front().n_frames() / 3;
+        keep(result.training, excerpt(motions.front(), 0, split));
+        keep(result.held_out, excerpt(motions.front(), split, motions.front().n_frames()));
+    } else {
+        const std::size_t n_held_out = std::max<std::size_t>(1, motions.size() / 4);
+        for (std::size_t m = 0; m < motions.size(); ++m) {
+            keep(m + n_held_out < motions.size() ? result.training : result.held_out, std::move(motions[m]));
+        }
+    }
+    result.description = {{"kind", "recorded"},
+                          {"split", motions.size() == 1 ? "time: first two thirds, last third" : "motions"},
+                          {"training_cases", names_of(result.training)},
+                          {"held_out_cases", names_of(result.held_out)}};
+    return result;
+}
+
+template std::vector<int> clamped_nodes<2>(const std::vector<std::string>&, const Points<2, double>&);
+template std::vector<int> clamped_nodes<3>(const std::vector<std::string>&, const Points<3, double>&);
+template ReferenceCases<2> record_cases<2>(const FemReference<2>&, const Discretisation<2>&, const FitOptions&);
+template ReferenceCases<3> record_cases<3>(const FemReference<3>&, const Discretisation<3>&, const FitOptions&);
+template ReferenceCases<2> split_recorded<2>(std::vector<Motion<2, double>>, const Discretisation<2>&, const FitOptions&);
+template ReferenceCases<3> split_recorded<3>(std::vector<Motion<3, double>>, const Discretisation<3>&, const FitOptions&);
+
+} // namespace program

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `springfit fit`: from a body to its calibrated springs.
+
+#include <cstdio>
+
+#include <springfit/core/version.hpp>
+#include <springfit/io/model_json.hpp>
+#include <springfit/io/motion_file.hpp>
+#include <springfit/io/report_json.hpp>
+#include <springfit/parallel/tbb.hpp>
+#include <springfit/score/motion_error.hpp>
+#include <springfit/step/stable_step.hpp>
+
+#include "candidates.hpp"
+#include "commands.hpp"
+#include "interrupt.hpp"
+#include "terminal.hpp"
+
+namespace program {
+
+using namespace springfit;
+
+namespace {
+
+/// Refuses what can be refused before any long work.
+void check(const FitOptions& options) {
+    require(options.young > 0 && std::isfinite(options.young), "--young", "a positive modulus, Pa", options.young);
+    require(options.poisson > -1 && options.poisson < 0.5, "--poisson", "a value in (-1, 0.5)", options.poisson);
+    require(options.density > 0 && std::isfinite(options.density), "--density", "a positive density, kg/m^3",
+            options.density);
+    require(options.threads >= 0, "--threads", "0 (all) or a positive number", options.threads);
+    if (options.thickness) {
+        require(*options.thickness > 0 && std::isfinite(*options.thickness), "--thickness", "a positive length, m",
+                *options.thickness);
+    }
+    if (options.cell_size) {
+        require(*options.cell_size > 0 && std::isfinite(*options.cell_size), "--cell-size", "a positive length, m",
+                *options.cell_size);
+    }
+    if (options.nodes) {
+        require(*options.nodes >= 4, "--nodes", "at least 4", *options.nodes);
+    }
+    if (options.deformation) {
+        require(*options.deformation > 0 && *options.deformation < 1, "--deformation",
+                "a part of the body's size in (0, 1)", *options.deformation);
+    }
+    if (options.damping_ratio) {
+        require(*options.damping_ratio >= 0 && *options.damping_ratio < 1, "--damping-ratio",
+                "a part of critical in [0, 1)", *options.damping_ratio);
+    }
+    if (options.frames) {
+        require(*options.frames >= 4, "--frames", "at least 4", *options.frames);
+    }
+    for (const auto& [count, name] : {std::pair{options.training_cases, "--training-cases"},
+                                      std::pair{options.held_out_cases, "--held-out-cases"}}) {
+        require(!count || *count >= 1, name, "at least one", count.value_or(0));
+    }
+    require(!options.zeta || (*options.zeta >= 0 && std::isfinite(*options.zeta)), "--zeta", "a value not below 0",
+            options.zeta.value_or(0));
+    require(!options.zeta || options.damping == "ratio", "--zeta", "--damping ratio beside it", "--damping " + options.damping);
+    if (!options.references.empty() || is_motion_file(options.input)) {
+        const auto refuse = [](bool given, const char* name) {
+            require(!given, name, "an FEM reference", "a recorded motion, for which it has no meaning");
+        };
+        refuse(options.material.has_value(), "--material");
+        refuse(options.element.has_value(), "--element");
+        refuse(options.training_cases.has_value(), "--training-cases");
+        refuse(options.held_out_cases.has_value(), "--held-out-cases");
+        refuse(options.frames.has_value(), "--frames");
+        refuse(options.deformation.has_value(), "--deformation");
+    }
+}
+
+template <int Dim>
+void check_thickness(const FitOptions& options, const AnyMesh& mesh) {
+    const bool solid = std::holds_alternative<Mesh<3, double, Tet4>>(mesh) ||
+                       std::holds_alternative<Mesh<3, double, Hex8>>(mesh);
+    require(!(solid && options.thickness), "--thickness", "a plane body or a membrane", "a solid");
+}
+
+template <int Dim>
+io::Json material_of(const FitOptions& options) {
+    io::Json material = {{"young", options.young}, {"poisson", options.poisson}, {"density", options.density}};
+    if (options.thickness || Dim == 2) {
+        material["thickness"] = options.thickness.value_or(1);
+    }
+    return material;
+}
+
+template <int Dim>
+void print_table(const std::vector<Candidate<Dim>>& candidates, std::size_t best) {
+    std::printf("\n%-16s %10s %10s %12s %10s\n", "method", "held-out", "training", "stiffness", "seconds");
+    for (std::size_t c = 0; c < candidates.size(); ++c) {
+        const auto& candidate = candidates[c];
+        std::printf("%-16s %10.4f %10.4f %12.3f %10.2f%s\n", candidate.name.c_str(), candidate.held_out,
+                    candidate.training, candidate.relative_stiffness, candidate.seconds,
+                    c == best ? "   <- returned" : "");
+    }
+    std::printf("(errors: |x - x_ref| / |x_ref - x_rest| over free nodes, frames and cases; stiffness: sum k l^2 beside "
+                "the first closed form)\n\n");
+}
+
+/// The fitted motion of the load case that is written: frames that the network reached.
+template <int Dim>
+std::vector<Points<Dim, double>> fitted_positions(const SpringNetwork<Dim, double>& network,
+                                                  const Scenario<Dim, double>& scenario,
+                                                  const Motion<Dim, double>& motion) {
+    const auto replayed = simulate(network, scenario, motion.times);
+    return replayed.motion.positions;
+}
+
+template <int Dim>
+int fit_body(const AnyMesh& mesh, std::vector<Motion<Dim, double>> recorded, std::vector<std::string> warnings,
+             const FitOptions& options, io::OutputFolder& folder, io::NamedNumbers stages) {
+    const auto since = [&stages](const Stage& stage, const char* name) { stages.emplace_back(name, stage.seconds()); };
+    const Execution execution = parallel::tbb(options.threads);
+    check_thickness<Dim>(options, mesh);
+    const Discretisation<Dim> body = discretise<Dim>(mesh, options);
+    std::printf("%lld nodes, %lld %s cells, %lld springs\n", static_cast<long long>(body.network.n_nodes()),
+                static_cast<long long>(body.cells.cols()), body.cell_name.c_str(),
+                static_cast<long long>(body.network.n_springs()));
+
+    Stage recording("reference");
+    const ReferenceCases<Dim> cases = recorded.empty()
+                                          ? record_cases<Dim>(*make_fem_reference<Dim>(mesh, options), body, options)
+                                          : split_recorded<Dim>(std::move(recorded), body, options);
+    since(recording, "reference");
+    warnings.insert(warnings.end(), cases.warnings.begin(), cases.warnings.end());
+
+    const bool cut_short = interrupted();
+    if (cut_short) {
+        watch_for_interrupt(); // what is there is fitted; a further Ctrl-C ends that as well
+    }
+    Stage fitting("fit");
+    auto candidates = make_candidates<Dim>(body, cases, options, execution);
+    const bool fit_interrupted = interrupted();
+    watch_for_interrupt();
+    since(fitting, "fit");
+    Stage scoring("score");
+    score<Dim>(candidates, cases);
+    since(scoring, "score");
+
+    std::size_t best = candidates.size() - 1; // the method asked for comes last
+    if (options.method == "auto" || options.method == "closed-form") {
+        for (std::size_t c = 0; c < candidates.size(); ++c) {
+            if (candidates[c].held_out < candidates[best].held_out) {
+                best = c;
+            }
+        }
+    }
+    for (const auto& candidate : candidates) {
+        if (candidate.fit && candidate.relative_stiffness < 0.9) {
+            warnings.push_back(text(candidate.name, " came out softer than the closed form (", candidate.relative_stiffness,
+                                    " of its stiffness): accelerations alone lose stiffness where springs cannot "
+                                    "represent the material"));
+        }
+        if (candidate.fit && !candidate.fit->not_identified.empty()) {
+            warnings.push_back(text(candidate.name, ": ", candidate.fit->not_identified.size(),
+                                    " values that no motion excites kept their prior"));
+        }
+        if (candidate.n_clamped > 0) {
+            warnings.push_back(text(candidate.name, ": ", candidate.n_clamped,
+                                    " springs came out negative and were set to 0"));
+        }
+    }
+    const Candidate<Dim>& chosen = candidates[best];
+    print_table<Dim>(candidates, best);
+    for (const std::string& warning : warnings) {
+        std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    }
+
+    io::Model<Dim, double> model;
+    model.network = chosen.network;
+    model.fixed = cases.held_out.motions.front().clamped;
+    model.stable_time_step = stable_step(chosen.network, model.fixed);
+    model.provenance = {{"springfit", SPRINGFIT_VERSION_STRING}, {"method", chosen.name}, {"input", options.input},
+                        {"material", material_of<Dim>(options)},  {"seed", options.seed},  {"reference", cases.description}};
+
+    io::Report report;
+    const bool early = cut_short || fit_interrupted;
+    report.status = early ? Status::interrupted : chosen.fit ? chosen.fit->status : Status::converged;
+    report.method = chosen.name;
+    report.nodes = body.network.n_nodes();
+    report.springs = body.network.n_springs();
+    report.held_out.error = chosen.held_out;
+    report.training.error = chosen.training;
+    io::Json fits = io::Json::object();
+    for (const auto& candidate : candidates) {
+        report.held_out.baselines.emplace_back(candidate.name, candidate.held_out);
+        report.training.baselines.emplace_back(candidate.name, candidate.training);
+        fits[candidate.name] = candidate.fit ? describe(*candidate.fit) : io::Json::object();
+        fits[candidate.name]["relative_stiffness"] = candidate.relative_stiffness;
+        fits[candidate.name]["seconds"] = candidate.seconds;
+    }
+    report.warnings = warnings;
+    report.detail = {{"fits", fits},
+                     {"reference", cases.description},
+                     {"seed", options.seed},
+                     {"threads", options.threads},
+                     {"damping", options.damping}};
+
+    io::OutputGroup outputs;
+    Stage writing("write");
+    const auto& shown = cases.held_out.motions.front();
+    write_motion_files<Dim>(outputs, folder.path(), body, shown,
+                            fitted_positions<Dim>(chosen.network, cases.held_out.scenarios.front(), shown));
+    io::write_model(outputs, folder.path() / "model.json", model);
+    since(writing, "write");
+    for (const auto& stage : stages) {
+        report.seconds += stage.second;
+    }
+    report.stage_seconds = stages;
+    io::write_report(outputs, folder.path() / "report.json", report);
+    outputs.commit();
+    std::printf("wrote model.json, report.json, motion.h5 and motion.xdmf to %s\n", folder.path().string().c_str());
+    return early ? exit_interrupted : 0;
+}
+
+} // namespace
+
+int run_fit(const FitOptions& options) {
+    check(options);
+    io::OutputFolder folder(options.out);
+    return 0;
+}
+
+} // namespace program

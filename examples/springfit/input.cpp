@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Everything that needs CGAL to read or make a mesh.
+
+#include <cstdio>
+
+#include <springfit/cgal/tetrahedralize.hpp>
+#include <springfit/cgal/triangulate.hpp>
+#include <springfit/io/mesh_file.hpp>
+
+#include "body.hpp"
+#include "terminal.hpp"
+
+namespace program {
+
+using namespace springfit;
+
+namespace {
+
+constexpr int default_nodes = 1000;
+
+[[nodiscard]] std::string extension(const std::string& path) {
+    std::string text = std::filesystem::path(path).extension().string();
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+    return text;
+}
+
+[[nodiscard]] bool is_one_of(const std::string& value, std::initializer_list<const char*> choices) {
+    return std::find(choices.begin(), choices.end(), value) != choices.end();
+}
+
+/// Options that say how to mesh have no use for a body that is meshed already.
+void refuse_meshing_options(const FitOptions& options) {
+    require(!options.cell_size, "--cell-size", "a surface or an outline as INPUT", options.input);
+    require(!options.nodes, "--nodes", "a surface or an outline as INPUT", options.input);
+    require(!options.fill_holes, "--fill-holes", "a surface as INPUT", options.input);
+}
+
+} // namespace
+
+bool is_motion_file(const std::string& path) { return is_one_of(extension(path), {".xdmf", ".xmf", ".h5", ".hdf5"}); }
+
+int dimension_of(const AnyMesh& mesh) {
+    return std::visit([](const auto& m) { return static_cast<int>(m.nodes.rows()); }, mesh);
+}
+
+AnyMesh read_mesh(const FitOptions& options) {
+    const std::string kind = extension(options.input);
+    if (!std::filesystem::exists(options.input)) {
+        throw FileError(options.input, "no such file");
+    }
+    if (is_one_of(kind, {".off", ".obj", ".stl", ".ply"})) {
+        Stage stage("mesh");
+        cgal::TetrahedralizeOptions how;
+        how.cell_size = options.cell_size.value_or(0);
+        how.n_nodes = options.cell_size ? 0 : options.nodes.value_or(default_nodes);
+        how.seed = options.seed;
+        how.repair.max_hole_edges = options.fill_holes ? cgal::small_hole_edges : 0;
+        how.progress = stage.callback();
+        return cgal::tetrahedralize<double>(std::filesystem::path(options.input), how);
+    }
+    if (is_one_of(kind, {".poly", ".wkt"})) {
+        require(!options.fill_holes, "--fill-holes", "a surface as INPUT", options.input);
+        Stage stage("mesh");
+        cgal::TriangulateOptions how;
+        how.cell_size = options.cell_size.value_or(0);
+        how.n_nodes = options.cell_size ? 0 : options.nodes.value_or(default_nodes);
+        return cgal::triangulate<double>(std::filesystem::path(options.input), how);
+    }
+    require(is_one_of(kind, {".msh", ".mesh", ".node", ".ele", ".vtk"}), "INPUT",
+            "one of .off .obj .stl .ply .poly .wkt .msh .mesh .node .vtk .xdmf .h5", options.input);
+    refuse_meshing_options(options);
+    return AnyMesh{};
+}
+
+} // namespace program

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `springfit simulate`: steps a fitted model and writes its motion.
+
+#include <cstdio>
+
+#include <springfit/io/model_json.hpp>
+#include <springfit/io/motion_file.hpp>
+#include <springfit/motion/record.hpp>
+#include <springfit/step/implicit_euler.hpp>
+#include <springfit/step/symplectic_euler.hpp>
+
+#include "commands.hpp"
+#include "terminal.hpp"
+
+namespace program {
+
+using namespace springfit;
+
+namespace {
+
+template <int Dim>
+int simulate_model(const io::Model<Dim, double>& model, const SimulateOptions& options, io::OutputFolder& folder) {
+    std::vector<double> gravity = options.gravity.value_or(std::vector<double>());
+    if (!options.gravity) {
+        gravity.assign(Dim, 0);
+        gravity[1] = -9.81;
+    }
+    require(gravity.size() == Dim, "--gravity", text(Dim, " numbers, separated by commas"), gravity.size());
+    Scenario<Dim, double> scenario;
+    scenario.name = "gravity";
+    scenario.clamps.push_back({model.fixed, {}});
+    scenario.gravity.push_back({Eigen::Map<const Vector<Dim, double>>(gravity.data()), {}});
+    require(scenario.gravity.front().acceleration.allFinite(), "--gravity", "finite numbers",
+            scenario.gravity.front().acceleration.transpose());
+
+    RecordOptions<double> how;
+    how.frames = options.frames;
+    how.dt = options.duration / (options.frames - 1);
+    if (options.time_step) {
+        how.steps_per_frame = static_cast<int>(std::ceil(how.dt / *options.time_step * (1 - 1e-12)));
+    }
+    Stage stage("simulate");
+    how.progress = stage.callback();
+    const auto recording = [&] {
+        if (options.integrator == "implicit") {
+            ImplicitEuler<Dim, double> stepper(model.network);
+            return record_stepper(stepper, scenario, how);
+        }
+        SymplecticEuler<Dim, double> stepper(model.network, {.max_substeps = 1000000});
+        return record_stepper(stepper, scenario, how);
+    }();
+    if (!usable(recording.status) || recording.motion.n_frames() == 0) {
+        throw InvalidArgument("simulation", "a motion that stays finite",
+                              text(to_string(recording.status), " after ", recording.motion.n_frames(), " frames"));
+    }
+    io::OutputGroup outputs;
+    write_network_motion<Dim>(outputs, folder.path(), model.network, recording.motion);
+    outputs.commit();
+    std::printf("wrote %lld frames of motion.h5 and motion.xdmf to %s\n",
+                static_cast<long long>(recording.motion.n_frames()), folder.path().string().c_str());
+    return recording.status == Status::interrupted ? exit_interrupted : 0;
+}
+
+} // namespace
+
+int run_simulate(const SimulateOptions& options) {
+    require(options.duration > 0 && std::isfinite(options.duration), "--duration", "a positive time, s", options.duration);
+    require(options.frames >= 2, "--frames", "at least 2", options.frames);
+    require(!options.time_step || (*options.time_step > 0 && std::isfinite(*options.time_step)), "--time-step",
+            "a positive time, s", options.time_step.value_or(0));
+    const io::Json json = io::read_json(options.model);
+    if (io::model_dimension(json, options.model) == 2) {
+        const auto model = io::model_from_json<2, double>(json, options.model);
+        io::OutputFolder folder(options.out);
+        return simulate_model<2>(model, options, folder);
+    }
+    const auto model = io::model_from_json<3, double>(json, options.model);
+    io::OutputFolder folder(options.out);
+    return simulate_model<3>(model, options, folder);
+}
+
+} // namespace program
