@@ -11,7 +11,7 @@ struct RecordOptions {
     Scalar dt = Scalar(0.01);  ///< time between frames, s, > 0
     int frames = 50;           ///< frames to record, the start included, >= 1
     int steps_per_frame = 1;   ///< steps of dt / steps_per_frame between two frames, >= 1
-    ProgressCallback progress; ///< called once per frame; returning false stops with the frames so far
+    ProgressCallback progress{}; ///< called once per frame; returning false stops with the frames so far
 };
 
 /// What came of a recording.

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <springfit/motion/state.hpp>
+#include <springfit/network/forces.hpp>
+
+namespace springfit::detail {
+
+/// What of a scenario changes in time: the rest is looked up once per frame.
+template <int Dim, std::floating_point Scalar>
+class DrivenScenario {
+public:
+    DrivenScenario(const Scenario<Dim, Scalar>& scenario, const Points<Dim, Scalar>& rest_positions)
+        : m_scenario(scenario), m_rest_positions(rest_positions),
+          m_clamped(clamped_nodes(scenario, rest_positions.cols())) {
+        for (const auto& clamp : scenario.clamps) {
+            m_clamps_move = m_clamps_move || static_cast<bool>(clamp.position);
+        }
+        for (const auto& gravity : scenario.gravity) {
+            m_loads_vary = m_loads_vary || static_cast<bool>(gravity.amplitude);
+        }
+        for (const auto& load : scenario.loads) {
+            m_loads_vary = m_loads_vary || static_cast<bool>(load.amplitude);
+        }
+    }
+
+    [[nodiscard]] const std::vector<int>& clamped() const { return m_clamped; }
+    [[nodiscard]] bool loads_vary() const { return m_loads_vary; }
+
+    /// Gives the clamped nodes the velocity that takes them to where they must be at `time`, h from now.
+    void aim_clamps(Scalar time, Scalar h, const Points<Dim, Scalar>& positions, Points<Dim, Scalar>& velocities) const {
+        if (!m_clamps_move) {
+            for (int node : m_clamped) {
+                velocities.col(node).setZero();
+            }
+            return;
+        }
+        for (const auto& clamp : m_scenario.clamps) {
+            for (int node : clamp.nodes) {
+                const Vector<Dim, Scalar> rest = m_rest_positions.col(node);
+                const Vector<Dim, Scalar> goal = clamp.position ? clamp.position(rest, time) : rest;
+                velocities.col(node) = (goal - positions.col(node)) / h;
+            }
+        }
+    }
+
+private:
+    const Scenario<Dim, Scalar>& m_scenario;
+    const Points<Dim, Scalar>& m_rest_positions;
+    std::vector<int> m_clamped;
+    bool m_clamps_move = false;
+    bool m_loads_vary = false;
+};
+
+template <int Dim, std::floating_point Scalar>
+bool is_finite(const State<Dim, Scalar>& state) {
+    return state.positions.allFinite() && state.velocities.allFinite() && state.accelerations.allFinite();
+}
+
+/// The state of a network at time 0; clamped nodes start without acceleration.
+template <int Dim, std::floating_point Scalar>
+State<Dim, Scalar> start_network(const SpringNetwork<Dim, Scalar>& network, const Scenario<Dim, Scalar>& scenario) {
+    validate(scenario, network.n_nodes());
+    State<Dim, Scalar> state;
+    state.positions = initial_positions(scenario, network.rest_positions);
+    state.velocities = initial_velocities(scenario, network.rest_positions);
+    const Points<Dim, Scalar> external = external_forces<Dim, Scalar>(scenario, network.mass, Scalar(0));
+    compute_accelerations<Dim, Scalar>(network, state.positions, state.velocities, external, state.accelerations);
+    for (int node : clamped_nodes(scenario, network.n_nodes())) {
+        state.accelerations.col(node).setZero();
+    }
+    return state;
+}
+
+/// Sets the accelerations of a state from its positions and velocities; clamped nodes: change of velocity over time.
+template <int Dim, std::floating_point Scalar>
+void finish_frame(const SpringNetwork<Dim, Scalar>& network, const Points<Dim, Scalar>& external,
+                  const std::vector<int>& clamped, const State<Dim, Scalar>& before, State<Dim, Scalar>& state) {
+    compute_accelerations<Dim, Scalar>(network, state.positions, state.velocities, external, state.accelerations);
+    for (int node : clamped) {
+        state.accelerations.col(node) =
+            (state.velocities.col(node) - before.velocities.col(node)) / (state.time - before.time);
+    }
+}
+
+} // namespace springfit::detail

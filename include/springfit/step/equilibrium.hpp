@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <springfit/motion/state.hpp>
+#include <springfit/step/detail/spring_potential.hpp>
+
+namespace springfit {
+
+template <int Dim, std::floating_point Scalar>
+struct EquilibriumOptions {
+    Scalar time = 0;                 ///< when the loads and clamps are read, s
+    Points<Dim, Scalar> start{};     ///< first guess [Dim x n_nodes], m; empty: the scenario's initial positions
+    Scalar tolerance = Scalar(1e-8); ///< largest unbalanced force relative to the largest load or spring force, > 0;
+                                     ///< rounding of the positions is the floor
+    int max_iterations = 200;        ///< Newton iterations, >= 1
+};
+
+/// Where a network comes to rest.
+template <int Dim, std::floating_point Scalar>
+struct Equilibrium {
+    Status status = Status::failed;
+    Points<Dim, Scalar> positions; ///< [Dim x n_nodes], m
+    Scalar residual = 0;           ///< largest unbalanced force component, N
+    int iterations = 0;
+    /// The stiffness at `positions` is positive definite well above rounding. Where it is not, there is a mechanism (a
+    /// motion that no spring resists), a free rigid motion or an instability: the positions are one of many, or a saddle.
+    bool stable = false;
+};
+
+namespace detail {
+
+/// True where the smallest eigenvalue, found by a few inverse iterations, stands clear of rounding.
+template <std::floating_point Scalar>
+bool is_positive_definite(SymmetricSolver<Scalar>& solver, const SparseMatrix<Scalar>& lower) {
+    if (lower.cols() == 0) {
+        return true;
+    }
+    if (!solver.factorise(lower) || solver.shift() > 0) {
+        return false;
+    }
+    Values<Scalar> x(lower.cols());
+    for (Index i = 0; i < x.size(); ++i) {
+        x(i) = std::sin(static_cast<Scalar>(i) + 1); // any vector that is orthogonal to nothing in particular
+    }
+    x.normalize();
+    Scalar growth = 0;
+    for (int iteration = 0; iteration < 8; ++iteration) {
+        x = solver.apply_factor(x).eval();
+        growth = x.norm();
+        x /= growth;
+    }
+    const Scalar largest = lower.diagonal().maxCoeff();
+    return std::isfinite(growth) && 1 / growth > 1000 * std::numeric_limits<Scalar>::epsilon() * largest;
+}
+
+} // namespace detail
+
+/// The static equilibrium of a network under a scenario at one time: the minimum of the potential energy
+/// E(x) - f_ext . x over the free nodes, by Newton's method with the exact Hessian and a line search.
+///
+/// Springs alone need not hold a shape: see `Equilibrium::stable`. Where the matrix is singular or indefinite, Newton's
+/// step is regularised and still goes downhill. Throws InvalidArgument for a scenario or option that does not fit.
+template <int Dim, std::floating_point Scalar>
+[[nodiscard]] Equilibrium<Dim, Scalar> equilibrium(const SpringNetwork<Dim, Scalar>& network,
+                                                   const Scenario<Dim, Scalar>& scenario,
+                                                   const EquilibriumOptions<Dim, Scalar>& options = {}) {
+    validate(network);
+    validate(scenario, network.n_nodes());
+    require(options.tolerance > 0, "tolerance", "a positive tolerance", options.tolerance);
+    require(options.max_iterations > 0, "max_iterations", "at least one", options.max_iterations);
+    require(options.start.size() == 0 || options.start.cols() == network.n_nodes(), "start",
+            text(network.n_nodes(), " columns, one per node"), options.start.cols());
+
+    Equilibrium<Dim, Scalar> result;
+    result.positions = options.start.size() > 0 ? options.start : initial_positions(scenario, network.rest_positions);
+    apply_clamps<Dim, Scalar>(scenario, network.rest_positions, options.time, result.positions);
+    const Points<Dim, Scalar> external = external_forces<Dim, Scalar>(scenario, network.mass, options.time);
+    const FreeNodes free(network.n_nodes(), clamped_nodes(scenario, network.n_nodes()));
+    detail::SpringPotential<Dim, Scalar> potential(network, free, Curvature::exact);
+    potential.set_statics(network, result.positions, external, Scalar(1e-9));
+
+    Values<Scalar> x = free.template gather<Dim, Scalar>(result.positions);
+    if (free.n_free() == 0) {
+        result.status = Status::converged;
+        result.stable = true;
+        return result;
+    }
+    Values<Scalar> gradient(x.size());
+    potential.gradient(x, gradient);
+    const Scalar force = std::max(gradient.template lpNorm<Eigen::Infinity>(), external.cwiseAbs().maxCoeff());
+    const Scalar rounding = potential.gradient_rounding(result.positions);
+    SymmetricSolver<Scalar> solver;
+    NewtonOptions<Scalar> newton;
+    newton.max_iterations = options.max_iterations;
+    newton.gradient_tolerance = std::max(options.tolerance * force, 4 * rounding);
+    const auto report = minimise(potential, x, solver, newton);
+    const bool at_rounding = report.status == Status::stalled && report.gradient_max <= 64 * rounding;
+    result.status = at_rounding ? Status::converged : report.status;
+    result.iterations = report.iterations;
+    result.residual = report.gradient_max;
+    free.template scatter<Dim, Scalar>(x, result.positions);
+    potential.set_statics(network, result.positions, external);
+    result.stable = usable(result.status) && detail::is_positive_definite<Scalar>(solver, potential.hessian(x));
+    return result;
+}
+
+} // namespace springfit

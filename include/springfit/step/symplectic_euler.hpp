@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <springfit/motion/state.hpp>
+#include <springfit/network/forces.hpp>
+#include <springfit/step/detail/driven_scenario.hpp>
+#include <springfit/step/stable_step.hpp>
+
+namespace springfit {
+
+/// One explicit step of a network, in place: v += h a(x, v), then x += h v. This is the step of real-time use.
+///
+/// `inverse_masses` `[n_nodes]` holds 1 / m_i, and 0 at clamped nodes: those keep their velocity. `external_forces` and
+/// the scratch array `forces` are `[Dim x n_nodes]`. Stable for h below `stable_step(network)`. O(springs), no allocation.
+template <int Dim, std::floating_point Scalar>
+void symplectic_euler_step(const SpringNetwork<Dim, Scalar>& network, const Values<Scalar>& inverse_masses,
+                           const Points<Dim, Scalar>& external_forces, Scalar h, Points<Dim, Scalar>& positions,
+                           Points<Dim, Scalar>& velocities, Points<Dim, Scalar>& forces) {
+    forces = external_forces;
+    add_spring_forces<Dim, Scalar>(network, positions, velocities, forces);
+    for (Index i = 0; i < positions.cols(); ++i) {
+        velocities.col(i) += h * inverse_masses(i) * forces.col(i);
+        positions.col(i) += h * velocities.col(i);
+    }
+}
+
+template <std::floating_point Scalar>
+struct SymplecticEulerOptions {
+    Scalar step_fraction = Scalar(0.5); ///< sub-step as a fraction of the stable step, in (0, 1)
+    int max_substeps = 2000;            ///< most sub-steps in one call of `advance`; more end it with `iteration_limit`
+};
+
+/// Explicit stepper: `advance` takes equal sub-steps of symplectic Euler below the stable step.
+///
+/// Velocities run half a sub-step ahead of positions within a call and are brought back to the same time at its end
+/// (the leap-frog form), so positions and velocities of a frame are second order in the sub-step where there is no
+/// damping, momentum is kept to rounding, and energy does not drift. Damping acts at the velocity half a sub-step earlier.
+/// `state.accelerations` is the network's own at the frame's positions and velocities; at clamped nodes it is the
+/// change of their velocity over the call. Clamped nodes go where the scenario says at every sub-step, with velocity by
+/// differencing over the sub-step.
+///
+/// A state that is not finite is undone: `diverged`. Model of `Stepper`.
+template <int Dim, std::floating_point ScalarType>
+class SymplecticEuler {
+public:
+    static constexpr int dimension = Dim;
+    using Scalar = ScalarType;
+
+    /// Throws InvalidArgument for a network or an option that cannot be used.
+    explicit SymplecticEuler(SpringNetwork<Dim, Scalar> network, const SymplecticEulerOptions<Scalar>& options = {})
+        : m_network(std::move(network)), m_options(options) {
+        validate(m_network);
+        require(options.step_fraction > 0 && options.step_fraction < 1, "step_fraction", "a value in (0, 1)",
+                options.step_fraction);
+        require(options.max_substeps > 0, "max_substeps", "at least one", options.max_substeps);
+        m_longest_substep = options.step_fraction * stable_step(m_network);
+    }
+
+    [[nodiscard]] const SpringNetwork<Dim, Scalar>& network() const { return m_network; }
+    [[nodiscard]] const Points<Dim, Scalar>& rest_positions() const { return m_network.rest_positions; }
+    [[nodiscard]] const Values<Scalar>& masses() const { return m_network.mass; }
+
+    /// Sub-steps that `advance` takes for a step of dt; more than an int holds reads as the largest int.
+    [[nodiscard]] int n_substeps(Scalar dt) const {
+        const Scalar count = std::ceil(dt / m_longest_substep);
+        constexpr int most = std::numeric_limits<int>::max();
+        return count < static_cast<Scalar>(most) ? std::max(1, static_cast<int>(count)) : most;
+    }
+
+    [[nodiscard]] State<Dim, Scalar> start(const Scenario<Dim, Scalar>& scenario) const {
+        return detail::start_network<Dim, Scalar>(m_network, scenario);
+    }
+
+    [[nodiscard]] Status advance(State<Dim, Scalar>& state, const Scenario<Dim, Scalar>& scenario, Scalar dt) {
+        require(dt > 0 && std::isfinite(dt), "dt", "a positive time step", dt);
+        const int substeps = n_substeps(dt);
+        if (substeps > m_options.max_substeps) {
+            return Status::iteration_limit;
+        }
+        m_before = state;
+        const Scalar h = dt / static_cast<Scalar>(substeps);
+        const detail::DrivenScenario<Dim, Scalar> driven(scenario, m_network.rest_positions);
+        m_inverse_masses = m_network.mass.cwiseInverse();
+        for (int node : driven.clamped()) {
+            m_inverse_masses(node) = 0;
+        }
+        m_external = external_forces<Dim, Scalar>(scenario, m_network.mass, state.time);
+
+        state.velocities += (h / 2) * state.accelerations;
+        for (int s = 1; s <= substeps; ++s) {
+            const Scalar time = state.time + dt * static_cast<Scalar>(s) / static_cast<Scalar>(substeps);
+            driven.aim_clamps(time, h, state.positions, state.velocities);
+            if (s == 1) {
+                state.positions += h * state.velocities;
+            } else {
+                symplectic_euler_step<Dim, Scalar>(m_network, m_inverse_masses, m_external, h, state.positions,
+                                                   state.velocities, m_forces);
+            }
+            if (driven.loads_vary()) {
+                m_external = external_forces<Dim, Scalar>(scenario, m_network.mass, time);
+            }
+        }
+        state.time += dt;
+        apply_clamps<Dim, Scalar>(scenario, m_network.rest_positions, state.time, state.positions);
+        compute_accelerations<Dim, Scalar>(m_network, state.positions, state.velocities, m_external, m_forces);
+        for (Index i = 0; i < m_network.n_nodes(); ++i) {
+            if (m_inverse_masses(i) > 0) {
+                state.velocities.col(i) += (h / 2) * m_forces.col(i);
+            }
+        }
+        detail::finish_frame<Dim, Scalar>(m_network, m_external, driven.clamped(), m_before, state);
+        if (!detail::is_finite<Dim, Scalar>(state)) {
+            state = m_before;
+            return Status::diverged;
+        }
+        return Status::converged;
+    }
+
+private:
+    SpringNetwork<Dim, Scalar> m_network;
+    SymplecticEulerOptions<Scalar> m_options;
+    Scalar m_longest_substep;
+    Values<Scalar> m_inverse_masses;
+    Points<Dim, Scalar> m_external;
+    Points<Dim, Scalar> m_forces;
+    State<Dim, Scalar> m_before;
+};
+
+/// The stepper with which a network is recorded. Makes `SpringNetwork` a model of `Reference`.
+template <int Dim, std::floating_point Scalar>
+[[nodiscard]] SymplecticEuler<Dim, Scalar> make_stepper(const SpringNetwork<Dim, Scalar>& network) {
+    return SymplecticEuler<Dim, Scalar>(network);
+}
+
+} // namespace springfit
