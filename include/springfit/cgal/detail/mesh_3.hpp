@@ -27,12 +27,12 @@ public:
     using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation, Domain::Corner_index, Domain::Curve_index>;
 
     SolidMesher(const TriangleSurface& surface, double sharp_edge_angle, unsigned seed)
-        : m_seed(seed), m_lines(sharp_lines(surface, sharp_edge_angle)) {
+        : m_seed(seed), m_edges(surface, sharp_edge_angle) {
         CGAL::copy_face_graph(surface, m_polyhedron);
     }
 
-    /// Tetrahedra with edges of about `size` and facets within `distance` of the surface. Lines of sharp edges shorter
-    /// than a few cells are left out: such a mesh could not show them.
+    /// Tetrahedra with edges of about `size` and facets within `distance` of the surface. Sharp edges that
+    /// make lines shorter than a few cells are left out: such a mesh could not show them.
     [[nodiscard]] Complex refined(double size, double distance) {
         namespace p = CGAL::parameters;
         prepare(size);
@@ -51,22 +51,20 @@ public:
 private:
     /// Largest circumradius of facets and cells per wanted edge length, at which the mean edge has that length.
     static constexpr double circumradius = 0.8;
-    /// Sharp lines are kept where the network they belong to is at least this many cells long.
+    /// Sharp edges are kept in networks at least this many cells long, without dangling branches shorter than that.
     static constexpr double shortest_network = 4;
+    static constexpr double shortest_branch = 1;
 
     void prepare(double size) {
-        std::vector<std::vector<Kernel::Point_3>> kept;
-        for (const SharpLine& line : m_lines) {
-            if (line.network_length >= shortest_network * size) {
-                kept.push_back(line.points);
-            }
-        }
-        if (!m_domain || kept.size() != m_n_kept) {
+        SharpEdges edges = m_edges;
+        edges.drop_short(shortest_branch * size, shortest_network * size);
+        std::vector<SharpLine> kept = edges.lines();
+        if (!m_domain || kept != m_kept) {
             m_domain.reset();
             m_domain.emplace(m_polyhedron, &m_random);
             m_domain->detect_features(180); // one patch per piece of the surface, and no features yet
             m_domain->add_features(kept.begin(), kept.end());
-            m_n_kept = kept.size();
+            m_kept = std::move(kept);
         }
         m_random = CGAL::Random(m_seed);
         CGAL::get_default_random() = CGAL::Random(m_seed);
@@ -74,9 +72,9 @@ private:
 
     unsigned m_seed;
     CGAL::Random m_random{0};
-    std::vector<SharpLine> m_lines;
+    SharpEdges m_edges;
     Polyhedron m_polyhedron;
-    std::size_t m_n_kept = 0;
+    std::vector<SharpLine> m_kept;
     std::optional<Domain> m_domain;
 };
 

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -59,8 +61,33 @@ inline bool is_not_finite_word(const std::string& word) {
            bare.find(".#in") != std::string::npos || bare.find(".#qn") != std::string::npos;
 }
 
-/// Throws FileError with the line of the first coordinate in a text file that is not a finite number.
-inline void require_finite_text(const std::filesystem::path& path, const std::string& extension) {
+/// Throws FileError for a corner in a binary STL file that is not finite; false where the file is text. (A binary file
+/// holds 84 bytes, the last four the number of faces, and 50 bytes for each.)
+inline bool require_finite_binary_stl(const std::filesystem::path& path) {
+    std::ifstream stream(path, std::ios::binary);
+    std::uint32_t n_faces = 0;
+    stream.seekg(80);
+    stream.read(reinterpret_cast<char*>(&n_faces), sizeof n_faces);
+    if (!stream || std::filesystem::file_size(path) != 84 + 50 * std::uintmax_t{n_faces}) {
+        return false;
+    }
+    std::array<float, 12> face; // its normal, then its corners
+    for (std::uint32_t f = 0; f < n_faces; ++f) {
+        stream.read(reinterpret_cast<char*>(face.data()), sizeof face);
+        stream.ignore(2);
+        if (!std::all_of(face.begin() + 3, face.end(), [](float x) { return std::isfinite(x); })) {
+            throw FileError(path.string(), text("a corner of face ", f, " is not finite"));
+        }
+    }
+    return true;
+}
+
+/// Throws FileError for a coordinate that is not a finite number, with its line where the file is text. (Coordinates in
+/// binary OFF and PLY files are looked at once they are read.)
+inline void require_finite(const std::filesystem::path& path, const std::string& extension) {
+    if (extension == ".stl" && require_finite_binary_stl(path)) {
+        return;
+    }
     std::ifstream stream(path, std::ios::binary);
     std::string line;
     bool in_ply_header = extension == ".ply";
@@ -69,9 +96,6 @@ inline void require_finite_text(const std::filesystem::path& path, const std::st
         std::string word;
         words >> word;
         if (number == 1 && extension == ".off" && line.find("BINARY") != std::string::npos) {
-            return;
-        }
-        if (number == 1 && extension == ".stl" && word != "solid") {
             return;
         }
         if (in_ply_header) {
@@ -104,9 +128,10 @@ inline PolygonSoup read_polygons(const std::filesystem::path& path) {
         throw FileError(name, "unknown kind of surface file '" + extension + "'; .off, .obj, .stl and .ply are read");
     }
     require_readable(path);
-    require_finite_text(path, extension);
+    require_finite(path, extension);
     PolygonSoup soup;
-    if (!CGAL::IO::read_polygon_soup(name, soup.points, soup.polygons)) {
+    const bool complete = CGAL::IO::read_polygon_soup(name, soup.points, soup.polygons);
+    if (!complete && !(extension == ".obj" && soup.polygons.empty())) { // an OBJ file without faces is whole, but empty
         throw FileError(name, "cannot be read as " + extension.substr(1) + " surface: broken or cut short");
     }
     for (std::size_t i = 0; i < soup.points.size(); ++i) {

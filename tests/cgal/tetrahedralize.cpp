@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tolerance.hpp"
+
+#include "shapes.hpp"
+
+#include <springfit/cgal/tetrahedralize.hpp>
+
+using namespace springfit;
+using test::relative;
+
+namespace {
+
+template <class Scalar>
+Scalar volume(const Mesh<3, Scalar, Tet4>& mesh) {
+    Scalar sum = 0;
+    for (Index c = 0; c < mesh.n_cells(); ++c) {
+        const auto x = mesh.cell_nodes(c);
+        const Scalar cell = (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0)).dot(x.col(3) - x.col(0)) / 6;
+        CHECK(cell > 0);
+        sum += cell;
+    }
+    return sum;
+}
+
+double mean_edge(const Mesh<3, double, Tet4>& mesh) {
+    const NodePairs pairs = edges(mesh);
+    double sum = 0;
+    for (Index e = 0; e < pairs.cols(); ++e) {
+        sum += (mesh.nodes.col(pairs(0, e)) - mesh.nodes.col(pairs(1, e))).norm();
+    }
+    return sum / static_cast<double>(pairs.cols());
+}
+
+/// Smallest angle between two faces of a cell, degrees.
+double smallest_dihedral(const Mesh<3, double, Tet4>& mesh) {
+    double largest_cosine = -1;
+    for (Index c = 0; c < mesh.n_cells(); ++c) {
+        const auto x = mesh.cell_nodes(c);
+        std::array<Vector<3, double>, 4> normals;
+        for (std::size_t f = 0; f < 4; ++f) {
+            const auto& corners = Tet4::facets[f];
+            normals[f] = (x.col(corners[1]) - x.col(corners[0])).cross(x.col(corners[2]) - x.col(corners[0])).normalized();
+        }
+        for (std::size_t f = 0; f < 4; ++f) {
+            for (std::size_t g = 0; g < f; ++g) {
+                largest_cosine = std::max(largest_cosine, -normals[f].dot(normals[g]));
+            }
+        }
+    }
+    return std::acos(largest_cosine) * 180 / 3.14159265358979;
+}
+
+} // namespace
+
+TEST_CASE("a solid with sharp edges is filled exactly, a round one nearly, by well-shaped cells") {
+    const auto l = cgal::tetrahedralize<double>(test::l_shape(), {.cell_size = 0.35});
+    CHECK_NOTHROW(validate(l));
+    CHECK(relative(volume(l), 3., 3.) < 1e-12);
+    CHECK(smallest_dihedral(l) > 5);
+    CHECK(relative(mean_edge(l), 0.35, 0.35) < 0.2);
+    for (const auto& corner : {Vector<3, double>{1, 1, 0}, Vector<3, double>{2, 1, 1}, Vector<3, double>{0, 0, 0}}) {
+        CHECK((l.nodes.colwise() - corner).colwise().norm().minCoeff() < 1e-12);
+    }
+    Index on_inner_edge = 0;
+    for (Index i = 0; i < l.n_nodes(); ++i) {
+        on_inner_edge += (l.nodes.col(i).head<2>() - Vector<2, double>{1, 1}).norm() < 1e-12 ? 1 : 0;
+    }
+    CHECK(on_inner_edge >= 3);
+
+    const auto ball = cgal::tetrahedralize<double>(test::sphere(4), {.cell_size = 0.3});
+    CHECK(relative(volume(ball), 4.18879, 4.18879) < 0.05);
+    CHECK(smallest_dihedral(ball) > 5);
+    for (int node : boundary_nodes(ball)) {
+        CHECK(ball.nodes.col(node).norm() > 0.99);
+    }
+}
+
+TEST_CASE("a wanted number of nodes is met within ten per cent, from a file as from arrays") {
+    const test::TemporaryFolder folder;
+    const auto path = folder.file("ball.off", test::off(test::sphere(3)));
+    const auto mesh = cgal::tetrahedralize<double>(path, {.n_nodes = 400});
+    CHECK(relative(static_cast<double>(mesh.n_nodes()), 400., 400.) < 0.1);
+    const auto box = cgal::tetrahedralize<float>(test::box(4, 1, 1), {.n_nodes = 200});
+    CHECK(relative(static_cast<double>(box.n_nodes()), 200., 200.) < 0.1);
+    CHECK(relative(volume(box), 4.f, 4.f) < 1e-5f);
+}
+
+TEST_CASE("the same input gives the same mesh") {
+    const auto surface = test::sphere(3);
+    const auto first = cgal::tetrahedralize<double>(surface, {.cell_size = 0.4});
+    (void)cgal::tetrahedralize<double>(test::l_shape(), {.cell_size = 0.6});
+    const auto again = cgal::tetrahedralize<double>(surface, {.cell_size = 0.4});
+    CHECK(first.nodes == again.nodes);
+    CHECK(first.cells == again.cells);
+    const auto other = cgal::tetrahedralize<double>(surface, {.cell_size = 0.4, .seed = 5});
+    CHECK(relative(volume(other), volume(first), volume(first)) < 0.02);
+}
+
+TEST_CASE("sharp edges are kept by their angle, short ones dropped as noise") {
+    cgal::detail::SharpEdges edges(cgal::detail::repaired(cgal::detail::to_soup(test::l_shape()), 0), 60);
+    CHECK(edges.lines().size() == 18);
+    cgal::detail::SharpEdges smooth(cgal::detail::repaired(cgal::detail::to_soup(test::l_shape()), 0), 100);
+    CHECK(smooth.lines().empty());
+    edges.drop_short(0.5, 21.9); // the outline is 8 long, twice, and 6 edges stand upright: 22 in all
+    CHECK(edges.lines().size() == 18);
+    edges.drop_short(0.5, 22.1);
+    CHECK(edges.lines().empty());
+}
+
+TEST_CASE("what cannot be meshed is refused with what is wrong") {
+    const auto surface = test::box(1, 1, 1);
+    using Options = cgal::TetrahedralizeOptions;
+    CHECK_THROWS_WITH_AS((void)cgal::tetrahedralize<double>(surface, {}),
+                         "cell_size, n_nodes: expected one of the two, found neither", InvalidArgument);
+    CHECK_THROWS_WITH_AS((void)cgal::tetrahedralize<double>(surface, {.cell_size = 1, .n_nodes = 9}),
+                         "cell_size, n_nodes: expected one of the two, found both", InvalidArgument);
+    CHECK_THROWS_AS((void)cgal::tetrahedralize<double>(surface, {.cell_size = -1}), InvalidArgument);
+    CHECK_THROWS_AS((void)cgal::tetrahedralize<double>(surface, {.cell_size = std::nan("")}), InvalidArgument);
+    CHECK_THROWS_AS((void)cgal::tetrahedralize<double>(surface, {.n_nodes = 3}), InvalidArgument);
+    CHECK_THROWS_AS((void)cgal::tetrahedralize<double>(surface, Options{.cell_size = 1, .sharp_edge_angle = 0}),
+                    InvalidArgument);
+    CHECK_THROWS_AS((void)cgal::tetrahedralize<double>(surface, Options{.cell_size = 1, .surface_distance = -1}),
+                    InvalidArgument);
+    CHECK_THROWS_AS((void)cgal::tetrahedralize<double>(surface, Options{.cell_size = 1, .sliver_angle = 50}),
+                    InvalidArgument);
+    auto open = surface;
+    open.cells = open.cells.rightCols(11).eval();
+    CHECK_THROWS_WITH_AS((void)cgal::tetrahedralize<double>(open, {.cell_size = 1}),
+                         "surface: expected a closed surface, found an open one: 3 boundary edges around 1 hole",
+                         InvalidArgument);
+    CHECK(relative(volume(cgal::tetrahedralize<double>(open, {.cell_size = 1, .repair = {.max_hole_edges = 3}})), 1., 1.) <
+          1e-12);
+    CHECK_THROWS_AS((void)cgal::tetrahedralize<double>("/no/such/surface.off", {.cell_size = 1}), FileError);
+
+    const auto apart = test::both(surface, surface, {3, 0, 0});
+    CHECK_THROWS_WITH_AS((void)cgal::tetrahedralize<double>(apart, {.cell_size = 0.5}),
+                         "cell_size: expected a mesh of one piece (finer cells join thin parts; several_pieces accepts "
+                         "more), found 2 pieces",
+                         InvalidArgument);
+    CHECK(relative(volume(cgal::tetrahedralize<double>(apart, {.cell_size = 0.5, .several_pieces = true})), 2., 2.) < 1e-12);
+}
+
+TEST_CASE("the caller may stop the search and gets the best mesh so far") {
+    int calls = 0;
+    std::string stage;
+    double last = 0;
+    const auto mesh = cgal::tetrahedralize<double>(test::sphere(2), {.n_nodes = 300, .progress = [&](const Progress& p) {
+                                                                         CHECK(p.fraction >= last);
+                                                                         CHECK(p.fraction <= 1);
+                                                                         last = p.fraction;
+                                                                         stage = p.stage;
+                                                                         return ++calls < 1;
+                                                                     }});
+    CHECK(mesh.n_cells() > 0);
+    CHECK(calls >= 1);
+    CHECK(stage == "mesh");
+}
