@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include <springfit/mesh/corner_mesh.hpp>
+#include <springfit/motion/motion.hpp>
+
+namespace springfit {
+
+/// Values at target points as weighted sums of values at source nodes: `targets = sources * weights`.
+///
+/// Built from a mesh of the source nodes by `cgal::interpolation`, or by hand. Every column sums to 1.
+template <std::floating_point ScalarType>
+struct Interpolation {
+    using Scalar = ScalarType;
+
+    SparseMatrix<Scalar> weights; ///< [n_sources x n_targets], one column per target
+
+    [[nodiscard]] Index n_sources() const { return weights.rows(); }
+    [[nodiscard]] Index n_targets() const { return weights.cols(); }
+};
+
+/// Throws InvalidArgument unless the weights of every target are finite and sum to 1.
+template <std::floating_point Scalar>
+void validate(const Interpolation<Scalar>& interpolation, std::string_view name) {
+    const Scalar tolerance = 1000 * std::numeric_limits<Scalar>::epsilon();
+    for (Index target = 0; target < interpolation.n_targets(); ++target) {
+        const Scalar sum = interpolation.weights.col(target).sum();
+        require(std::abs(sum - 1) <= tolerance, name, "weights that sum to 1", text(sum, " at target ", target));
+    }
+}
+
+/// Values at the targets: m_c = sum_i w_ic q_i `[Dim x n_targets]`. O(weights).
+template <int Dim, std::floating_point Scalar>
+[[nodiscard]] Points<Dim, Scalar> interpolate(const Interpolation<Scalar>& interpolation,
+                                              const Points<Dim, Scalar>& at_sources) {
+    require(at_sources.cols() == interpolation.n_sources(), "values", text(interpolation.n_sources(), " sources"),
+            at_sources.cols());
+    return at_sources * interpolation.weights;
+}
+
+/// Forces at the targets handed to the sources, f_i = sum_c w_ic f_c `[Dim x n_sources]`: the adjoint of `interpolate`,
+/// so that the work on any motion of the sources is the same and the total force is kept. O(weights).
+template <int Dim, std::floating_point Scalar>
+[[nodiscard]] Points<Dim, Scalar> restrict_forces(const Interpolation<Scalar>& interpolation,
+                                                  const Points<Dim, Scalar>& at_targets) {
+    require(at_targets.cols() == interpolation.n_targets(), "forces", text(interpolation.n_targets(), " targets"),
+            at_targets.cols());
+    return at_targets * interpolation.weights.transpose();
+}
+
+/// Masses at the targets handed to the sources, m_i = sum_c w_ic m_c `[n_sources]`; the total is kept.
+///
+/// Throws InvalidArgument where a source gets no mass: the targets are then too coarse for the sources. O(weights).
+template <std::floating_point Scalar>
+[[nodiscard]] Values<Scalar> restrict_masses(const Interpolation<Scalar>& interpolation,
+                                             const Values<Scalar>& at_targets) {
+    require(at_targets.size() == interpolation.n_targets(), "masses", text(interpolation.n_targets(), " targets"),
+            at_targets.size());
+    const Values<Scalar> masses = interpolation.weights * at_targets;
+    for (Index i = 0; i < masses.size(); ++i) {
+        require(masses(i) > 0, "masses", "a share of the mass for every node", text(masses(i), " kg at node ", i));
+    }
+    return masses;
+}
+
+/// The two interpolations between a mesh and its corners, for `transfer` to a network on the corners.
+template <std::floating_point Scalar>
+struct CornerInterpolations {
+    Interpolation<Scalar> at_corners; ///< mesh nodes to `corner_mesh` nodes: each corner is itself
+    Interpolation<Scalar> at_nodes;   ///< `corner_mesh` nodes to mesh nodes: an edge's node is the mean of its ends
+};
+
+/// Interpolations between the nodes of a mesh and those of `corner_mesh(mesh)`; identities for a linear mesh. O(cells).
+template <int Dim, std::floating_point Scalar, CellType Cell>
+[[nodiscard]] CornerInterpolations<Scalar> corner_interpolations(const Mesh<Dim, Scalar, Cell>& mesh) {
+    const std::vector<int> corners = corner_nodes(mesh);
+    const auto n_corners = static_cast<Index>(corners.size());
+    CornerInterpolations<Scalar> result;
+    std::vector<int> number(static_cast<std::size_t>(mesh.n_nodes()), -1);
+    result.at_corners.weights.resize(mesh.n_nodes(), n_corners);
+    for (int c = 0; c < n_corners; ++c) {
+        number[static_cast<std::size_t>(corners[static_cast<std::size_t>(c)])] = c;
+        result.at_corners.weights.insert(corners[static_cast<std::size_t>(c)], c) = 1;
+    }
+    result.at_corners.weights.makeCompressed();
+
+    std::vector<Eigen::Triplet<Scalar>> entries;
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+        entries.emplace_back(static_cast<int>(c), corners[c], Scalar(1));
+    }
+    std::vector<bool> done(static_cast<std::size_t>(mesh.n_nodes()), false);
+    for (Index c = 0; c < mesh.n_cells(); ++c) {
+        for (int e = 0; e < Cell::n_nodes - Cell::n_corners; ++e) {
+            const int middle = mesh.cells(Cell::n_corners + e, c);
+            if (!done[static_cast<std::size_t>(middle)]) {
+                done[static_cast<std::size_t>(middle)] = true;
+                for (int end : Cell::edges[static_cast<std::size_t>(e)]) {
+                    entries.emplace_back(number[static_cast<std::size_t>(mesh.cells(end, c))], middle, Scalar(0.5));
+                }
+            }
+        }
+    }
+    result.at_nodes.weights.resize(n_corners, mesh.n_nodes());
+    result.at_nodes.weights.setFromTriplets(entries.begin(), entries.end());
+    return result;
+}
+
+/// The motion of a fine mesh carried to the nodes of a coarser network.
+///
+/// Kinematics are read off at the coarse nodes (`at_coarse`: fine nodes to coarse nodes): a coarse node moves from its rest
+/// position by the interpolated displacement, so an affine motion comes out exactly. External forces are handed over by the
+/// adjoint of the other interpolation (`at_fine`: coarse nodes to fine nodes): the total force is kept exactly, and the
+/// moment as far as `at_fine` reproduces the fine positions. A coarse node is clamped where every fine node that it is
+/// read from is.
+///
+/// Throws InvalidArgument for sizes that do not fit and for weights that do not sum to 1. O(frames * weights).
+template <int Dim, std::floating_point Scalar>
+[[nodiscard]] Motion<Dim, Scalar> transfer(const Motion<Dim, Scalar>& fine, const Interpolation<Scalar>& at_coarse,
+                                           const Interpolation<Scalar>& at_fine,
+                                           const Points<Dim, Scalar>& coarse_rest_positions) {
+    const Index n_fine = fine.n_nodes();
+    const Index n_coarse = coarse_rest_positions.cols();
+    require(at_coarse.n_sources() == n_fine && at_coarse.n_targets() == n_coarse, "at_coarse",
+            text("weights [", n_fine, " x ", n_coarse, "]"),
+            text("[", at_coarse.n_sources(), " x ", at_coarse.n_targets(), "]"));
+    require(at_fine.n_sources() == n_coarse && at_fine.n_targets() == n_fine, "at_fine",
+            text("weights [", n_coarse, " x ", n_fine, "]"),
+            text("[", at_fine.n_sources(), " x ", at_fine.n_targets(), "]"));
+    validate(at_coarse, "at_coarse");
+    validate(at_fine, "at_fine");
+    validate(fine);
+
+    Motion<Dim, Scalar> coarse;
+    coarse.name = fine.name;
+    coarse.rest_positions = coarse_rest_positions;
+    coarse.times = fine.times;
+    std::vector<bool> held(static_cast<std::size_t>(n_fine), false);
+    for (int node : fine.clamped) {
+        held[static_cast<std::size_t>(node)] = true;
+    }
+    const Scalar rounding = std::sqrt(std::numeric_limits<Scalar>::epsilon());
+    for (Index c = 0; c < n_coarse; ++c) {
+        bool all_held = true;
+        for (typename SparseMatrix<Scalar>::InnerIterator weight(at_coarse.weights, c); weight; ++weight) {
+            all_held = all_held && (std::abs(weight.value()) <= rounding || held[static_cast<std::size_t>(weight.row())]);
+        }
+        if (all_held) {
+            coarse.clamped.push_back(static_cast<int>(c));
+        }
+    }
+    for (std::size_t t = 0; t < fine.times.size(); ++t) {
+        const Points<Dim, Scalar> displacement = fine.positions[t] - fine.rest_positions;
+        coarse.positions.push_back(coarse_rest_positions + interpolate(at_coarse, displacement));
+        coarse.velocities.push_back(interpolate(at_coarse, fine.velocities[t]));
+        coarse.accelerations.push_back(interpolate(at_coarse, fine.accelerations[t]));
+        coarse.external_forces.push_back(restrict_forces(at_fine, fine.external_forces[t]));
+    }
+    return coarse;
+}
+
+} // namespace springfit
