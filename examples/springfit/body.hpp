@@ -4,6 +4,7 @@
 #include <string>
 #include <variant>
 
+#include <springfit/io/motion_file.hpp>
 #include <springfit/mesh/mesh.hpp>
 #include <springfit/network/spring_network.hpp>
 
@@ -26,6 +27,10 @@ using AnyMesh =
 /// True for the file of a recorded motion.
 [[nodiscard]] bool is_motion_file(const std::string& path);
 
+/// The mesh of a recorded motion. Throws FileError where it holds no cells of a kind that springs can be laid along.
+template <int Dim>
+[[nodiscard]] AnyMesh mesh_of(const springfit::io::RecordedMotion<Dim, double>& recorded, const std::string& path);
+
 /// The stiffness that a published formula gives every spring.
 struct ClosedFormResult {
     std::string name;
@@ -38,7 +43,7 @@ template <int Dim>
 struct Discretisation {
     springfit::SpringNetwork<Dim, double> network; ///< springs, rest lengths and masses; stiffness 0 as yet
     std::vector<ClosedFormResult> closed_forms;    ///< all that hold for these cells
-    Eigen::MatrixXi cells;                         ///< corner nodes [corners x n_cells]
+    springfit::io::MotionTopology topology;        ///< cells and springs, for the motion files
     std::string cell_name;
     std::vector<int> surface; ///< nodes on the boundary
 };

@@ -49,7 +49,7 @@ std::vector<Candidate<Dim>> make_candidates(const Discretisation<Dim>& body, con
         AccelerationOptions<double> how;
         how.parameters.damping.fit = options.damping == "fitted";
         if (options.damping == "proportional") {
-            how.parameters.proportional_damping = cases.stiffness_damping;
+            how.parameters.damping_per_stiffness = cases.stiffness_damping;
         }
         const FitProblem problem = [&] {
             Stage stage("assemble objective");
@@ -69,7 +69,7 @@ std::vector<Candidate<Dim>> make_candidates(const Discretisation<Dim>& body, con
                 return;
             }
             apply(problem, *candidate.fit, candidate.network);
-            if (options.damping != "fitted") {
+            if (options.damping == "ratio") {
                 set_damping<Dim>(candidate.network, cases.stiffness_damping, options);
             }
             candidate.seconds = stage.seconds();

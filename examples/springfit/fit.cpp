@@ -7,6 +7,7 @@
 #include <springfit/io/model_json.hpp>
 #include <springfit/io/motion_file.hpp>
 #include <springfit/io/report_json.hpp>
+#include <springfit/motion/replay.hpp>
 #include <springfit/parallel/tbb.hpp>
 #include <springfit/score/motion_error.hpp>
 #include <springfit/step/stable_step.hpp>
@@ -72,13 +73,6 @@ void check(const FitOptions& options) {
 }
 
 template <int Dim>
-void check_thickness(const FitOptions& options, const AnyMesh& mesh) {
-    const bool solid = std::holds_alternative<Mesh<3, double, Tet4>>(mesh) ||
-                       std::holds_alternative<Mesh<3, double, Hex8>>(mesh);
-    require(!(solid && options.thickness), "--thickness", "a plane body or a membrane", "a solid");
-}
-
-template <int Dim>
 io::Json material_of(const FitOptions& options) {
     io::Json material = {{"young", options.young}, {"poisson", options.poisson}, {"density", options.density}};
     if (options.thickness || Dim == 2) {
@@ -100,13 +94,17 @@ void print_table(const std::vector<Candidate<Dim>>& candidates, std::size_t best
                 "the first closed form)\n\n");
 }
 
-/// The fitted motion of the load case that is written: frames that the network reached.
+/// Writes the motion of the reference and of the network under one load case, as far as both go.
 template <int Dim>
-std::vector<Points<Dim, double>> fitted_positions(const SpringNetwork<Dim, double>& network,
-                                                  const Scenario<Dim, double>& scenario,
-                                                  const Motion<Dim, double>& motion) {
-    const auto replayed = simulate(network, scenario, motion.times);
-    return replayed.motion.positions;
+void write_shown_motion(io::OutputGroup& outputs, const std::filesystem::path& h5, const Discretisation<Dim>& body,
+                        const Motion<Dim, double>& reference, const Scenario<Dim, double>& scenario,
+                        const SpringNetwork<Dim, double>& network, std::vector<std::string>& warnings) {
+    const auto fitted = simulate(network, scenario, reference.times).motion;
+    if (fitted.n_frames() < reference.n_frames()) {
+        warnings.push_back(text("motion.h5: the network's motion ended after ", fitted.n_frames(), " of ",
+                                reference.n_frames(), " frames"));
+    }
+    io::write_motion(outputs, h5, excerpt(reference, 0, fitted.n_frames()), body.topology, &fitted.positions);
 }
 
 template <int Dim>
@@ -114,10 +112,9 @@ int fit_body(const AnyMesh& mesh, std::vector<Motion<Dim, double>> recorded, std
              const FitOptions& options, io::OutputFolder& folder, io::NamedNumbers stages) {
     const auto since = [&stages](const Stage& stage, const char* name) { stages.emplace_back(name, stage.seconds()); };
     const Execution execution = parallel::tbb(options.threads);
-    check_thickness<Dim>(options, mesh);
     const Discretisation<Dim> body = discretise<Dim>(mesh, options);
     std::printf("%lld nodes, %lld %s cells, %lld springs\n", static_cast<long long>(body.network.n_nodes()),
-                static_cast<long long>(body.cells.cols()), body.cell_name.c_str(),
+                static_cast<long long>(body.topology.cells.cols()), body.cell_name.c_str(),
                 static_cast<long long>(body.network.n_springs()));
 
     Stage recording("reference");
@@ -202,8 +199,8 @@ int fit_body(const AnyMesh& mesh, std::vector<Motion<Dim, double>> recorded, std
     io::OutputGroup outputs;
     Stage writing("write");
     const auto& shown = cases.held_out.motions.front();
-    write_motion_files<Dim>(outputs, folder.path(), body, shown,
-                            fitted_positions<Dim>(chosen.network, cases.held_out.scenarios.front(), shown));
+    write_shown_motion<Dim>(outputs, folder.path() / "motion.h5", body, shown, cases.held_out.scenarios.front(),
+                            chosen.network, warnings);
     io::write_model(outputs, folder.path() / "model.json", model);
     since(writing, "write");
     for (const auto& stage : stages) {
@@ -216,12 +213,72 @@ int fit_body(const AnyMesh& mesh, std::vector<Motion<Dim, double>> recorded, std
     return early ? exit_interrupted : 0;
 }
 
+/// A recorded motion, with what the report has to say of it.
+template <int Dim>
+io::RecordedMotion<Dim, double> read_recorded(const std::string& path, std::vector<std::string>& warnings) {
+    auto recorded = io::read_motion<Dim, double>(path);
+    for (const std::string& column : recorded.differenced) {
+        warnings.push_back(path + ": " + column + " is not in the file and was differenced");
+    }
+    if (!recorded.forces_recorded) {
+        warnings.push_back(path + ": external forces are not in the file and were taken as zero");
+    }
+    if (!recorded.clamped_recorded) {
+        // Nodes that never leave their place are taken as held.
+        auto& motion = recorded.motion;
+        for (Index i = 0; i < motion.n_nodes(); ++i) {
+            const bool still = std::all_of(motion.positions.begin(), motion.positions.end(), [&](const auto& frame) {
+                return (frame.col(i) - motion.rest_positions.col(i)).isZero(0);
+            });
+            if (still) {
+                motion.clamped.push_back(static_cast<int>(i));
+            }
+        }
+        warnings.push_back(text(path, ": clamped nodes are not in the file; the ", motion.clamped.size(),
+                                " nodes that never move were taken as clamped"));
+    }
+    return recorded;
+}
+
+/// Everything from the body on, for one dimension; `mesh` is empty where INPUT is a recorded motion.
+template <int Dim>
+int fit_dimension(std::optional<AnyMesh> mesh, const FitOptions& options, io::OutputFolder& folder,
+                  io::NamedNumbers stages) {
+    std::vector<std::string> warnings;
+    std::vector<Motion<Dim, double>> motions;
+    if (!mesh) {
+        auto input = read_recorded<Dim>(options.input, warnings);
+        mesh = mesh_of<Dim>(input, options.input);
+        motions.push_back(std::move(input.motion));
+    }
+    for (const auto& path : options.references) {
+        require(io::read_motion_dimension(path) == Dim, "--reference", text("a motion of dimension ", Dim), path);
+        motions.push_back(read_recorded<Dim>(path, warnings).motion);
+    }
+    return fit_body<Dim>(*mesh, std::move(motions), std::move(warnings), options, folder, std::move(stages));
+}
+
 } // namespace
 
 int run_fit(const FitOptions& options) {
     check(options);
     io::OutputFolder folder(options.out);
-    return 0;
+    io::NamedNumbers stages;
+    std::optional<AnyMesh> mesh;
+    int dimension = 0;
+    if (is_motion_file(options.input)) {
+        dimension = io::read_motion_dimension(options.input);
+    } else {
+        Stage stage("read and mesh");
+        mesh = read_mesh(options);
+        dimension = dimension_of(*mesh);
+        stages.emplace_back("mesh", stage.seconds());
+    }
+    if (interrupted()) {
+        throw Interrupted();
+    }
+    return dimension == 2 ? fit_dimension<2>(std::move(mesh), options, folder, std::move(stages))
+                          : fit_dimension<3>(std::move(mesh), options, folder, std::move(stages));
 }
 
 } // namespace program

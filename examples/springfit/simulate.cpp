@@ -54,7 +54,13 @@ int simulate_model(const io::Model<Dim, double>& model, const SimulateOptions& o
                               text(to_string(recording.status), " after ", recording.motion.n_frames(), " frames"));
     }
     io::OutputGroup outputs;
-    write_network_motion<Dim>(outputs, folder.path(), model.network, recording.motion);
+    io::MotionWriter<Dim, double> writer(outputs, folder.path() / "motion.h5", recording.motion,
+                                         {.kind = {}, .cells = {}, .springs = model.network.springs});
+    for (Index t = 0; t < recording.motion.n_frames(); ++t) {
+        const auto frame = static_cast<std::size_t>(t);
+        writer.append({.time = recording.motion.times[frame], .fitted_positions = &recording.motion.positions[frame]});
+    }
+    writer.finish();
     outputs.commit();
     std::printf("wrote %lld frames of motion.h5 and motion.xdmf to %s\n",
                 static_cast<long long>(recording.motion.n_frames()), folder.path().string().c_str());

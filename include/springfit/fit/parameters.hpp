@@ -36,6 +36,9 @@ struct ParameterOptions {
     KindOptions<ParameterKind::stiffness> stiffness{};
     KindOptions<ParameterKind::damping> damping{};
     KindOptions<ParameterKind::preload> preload{};
+    /// beta of Kelvin-Voigt springs, s, >= 0: above 0 every fitted stiffness brings its damping c_e = beta k_e along (the
+    /// network's own damping is not used, and damping cannot be fitted besides).
+    double damping_per_stiffness = 0;
     /// Weight of `ridge / 2 * h * (theta - prior)^2`, h the mean curvature of the kind; >= 0, 0 switches it off.
     double ridge = 0;
 };
@@ -57,7 +60,12 @@ public:
     /// Numbers every spring or group. Throws InvalidArgument where a size, bound or prior is wrong or nothing is fitted.
     template <int Dim, std::floating_point Scalar>
     Parameters(const SpringNetwork<Dim, Scalar>& network, const ParameterOptions& options)
-        : m_rest_length(network.rest_length.template cast<double>()) {
+        : m_rest_length(network.rest_length.template cast<double>()),
+          m_damping_per_stiffness(options.damping_per_stiffness) {
+        require(m_damping_per_stiffness >= 0 && std::isfinite(m_damping_per_stiffness), "damping_per_stiffness",
+                "a time not below 0", m_damping_per_stiffness);
+        require(m_damping_per_stiffness == 0 || (options.stiffness.fit && !options.damping.fit),
+                "damping_per_stiffness", "stiffness fitted and damping not", "another choice of unknowns");
         require(options.ridge >= 0 && std::isfinite(options.ridge), "ridge", "a finite value not below 0",
                 options.ridge);
         add_kind(options.stiffness, "stiffness", network.stiffness.template cast<double>());
@@ -128,10 +136,14 @@ public:
     /// Rest lengths that preload is counted from `[n_springs]`, m.
     [[nodiscard]] const Values<double>& rest_length() const { return m_rest_length; }
 
+    /// c_e / k_e of springs whose damping follows their stiffness, s; 0: it does not.
+    [[nodiscard]] double damping_per_stiffness() const { return m_damping_per_stiffness; }
+
     /// The same with the unknowns that `keep` marks, renumbered in order `[n_unknowns]`.
     [[nodiscard]] Parameters subset(const std::vector<bool>& keep) const {
         Parameters result;
         result.m_rest_length = m_rest_length;
+        result.m_damping_per_stiffness = m_damping_per_stiffness;
         result.m_kinds = m_kinds;
         std::vector<int> renumbered(m_kind.size(), -1);
         std::vector<int> kept;
@@ -216,6 +228,7 @@ private:
     }
 
     Values<double> m_rest_length;
+    double m_damping_per_stiffness = 0;
     std::array<Kind, 3> m_kinds;
     std::vector<ParameterKind> m_kind; ///< per unknown
     Values<double> m_lower, m_upper, m_prior;

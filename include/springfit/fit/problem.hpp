@@ -102,6 +102,9 @@ void apply(const FitProblem& problem, const Values<double>& theta, SpringNetwork
     if (parameters.fits(ParameterKind::stiffness)) {
         network.stiffness = parameters.per_spring(ParameterKind::stiffness, theta).template cast<Scalar>();
     }
+    if (parameters.damping_per_stiffness() > 0) {
+        network.damping = static_cast<Scalar>(parameters.damping_per_stiffness()) * network.stiffness;
+    }
     if (parameters.fits(ParameterKind::damping)) {
         network.damping = parameters.per_spring(ParameterKind::damping, theta).template cast<Scalar>();
     }

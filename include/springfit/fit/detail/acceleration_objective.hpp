@@ -14,7 +14,11 @@ void AccelerationObjective<Dim, Scalar>::index_springs(const SpringNetwork<Dim, 
     m_stiffness = known(ParameterKind::stiffness, network.stiffness);
     m_damping = known(ParameterKind::damping, network.damping);
     m_rest_length = network.rest_length.template cast<double>();
-    m_uses_velocity = m_parameters.fits(ParameterKind::damping) || (m_damping.array() != 0).any();
+    if (m_parameters.damping_per_stiffness() > 0) {
+        m_damping.setZero();
+    }
+    m_uses_velocity = m_parameters.fits(ParameterKind::damping) || m_parameters.damping_per_stiffness() > 0 ||
+                      (m_damping.array() != 0).any();
 
     std::vector<Index> count(static_cast<std::size_t>(n_nodes()) + 1, 0);
     for (Index e = 0; e < network.n_springs(); ++e) {
@@ -102,7 +106,7 @@ void AccelerationObjective<Dim, Scalar>::add_node(
         equations.resize(Eigen::NoChange, n + 1);
     }
     const auto run = [&](Index column, int d) {
-        return Eigen::Map<Lanes, Eigen::Aligned32>(equations.col(column).data() + d * lanes);
+        return Eigen::Map<Lanes, Eigen::AlignedMax>(equations.col(column).data() + d * lanes);
     };
     const Lanes weight = m_batch.weight(node);
     for (int d = 0; d < Dim; ++d) {
@@ -127,8 +131,8 @@ void AccelerationObjective<Dim, Scalar>::add_node(
                         (m_batch.velocity(end.other, d) - m_batch.velocity(node, d));
             }
         }
-        const Lanes stretch = length - m_rest_length(end.spring);
-        const Lanes known = m_stiffness(end.spring) * stretch + m_damping(end.spring) * rate;
+        const Lanes per_stiffness = length - m_rest_length(end.spring) + m_parameters.damping_per_stiffness() * rate;
+        const Lanes known = m_stiffness(end.spring) * per_stiffness + m_damping(end.spring) * rate;
         const auto write = [&](ParameterKind kind, int d, const auto& values) {
             const auto k = static_cast<std::size_t>(kind);
             if (end.column[k] >= 0) {
@@ -142,7 +146,7 @@ void AccelerationObjective<Dim, Scalar>::add_node(
         };
         for (int d = 0; d < Dim; ++d) {
             const Lanes along = weight * direction[static_cast<std::size_t>(d)];
-            write(ParameterKind::stiffness, d, stretch * along);
+            write(ParameterKind::stiffness, d, per_stiffness * along);
             write(ParameterKind::damping, d, rate * along);
             write(ParameterKind::preload, d, -along);
             run(n, d) -= known * along;
