@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+
+#include <springfit/core/error.hpp>
+#include <springfit/core/types.hpp>
+#include <springfit/mesh/cell.hpp>
+
+namespace springfit {
+
+/// What a closed form needs to know of a material.
+struct IsotropicSolid {
+    double young = 0;          ///< Young's modulus E > 0, Pa
+    double poisson = 0;        ///< Poisson's ratio nu in (-1, 0.5)
+    double thickness = 1;      ///< h > 0, m; of plane bodies and membranes
+    bool plane_strain = false; ///< of plane bodies, else plane stress; membranes are in plane stress
+};
+
+/// The stiffness that a closed form gives to each spring.
+template <std::floating_point Scalar>
+struct ClosedForm {
+    Values<Scalar> stiffness; ///< k_e >= 0 [n_springs], N/m
+    Index n_clamped = 0;      ///< values that came out negative and were set to 0
+    Index n_without_cell = 0; ///< springs of no cell, as of a second ring: the formula says nothing, they get 0
+};
+
+namespace detail {
+
+/// Lame's constants as a body of the given dimension feels them: in the plane lambda is the plane one and both carry
+/// the thickness. E and nu are those of a plane stress with these constants (plane bodies) or the solid's own.
+template <std::floating_point Scalar>
+struct ElasticConstants {
+    Scalar lambda;
+    Scalar mu;
+    Scalar young;
+    Scalar poisson;
+};
+
+template <int Dim, CellType Cell, std::floating_point Scalar>
+ElasticConstants<Scalar> constants(const IsotropicSolid& solid) {
+    const double e = solid.young;
+    const double nu = solid.poisson;
+    require(e > 0 && std::isfinite(e), "young", "a positive modulus", e);
+    require(nu > -1 && nu < 0.5, "poisson", "a value in (-1, 0.5)", nu);
+    require(solid.thickness > 0 && std::isfinite(solid.thickness), "thickness", "a positive thickness",
+            solid.thickness);
+    require(!solid.plane_strain || (Dim == 2 && Cell::dimension == 2), "plane_strain", "a plane body",
+            Cell::dimension == 3 ? "a solid" : "a membrane");
+    const double mu = e / (2 * (1 + nu));
+    const double lambda = e * nu / ((1 + nu) * (1 - 2 * nu));
+    if (Cell::dimension == 3) {
+        return {static_cast<Scalar>(lambda), static_cast<Scalar>(mu), static_cast<Scalar>(e), static_cast<Scalar>(nu)};
+    }
+    const double plane = solid.plane_strain ? lambda : e * nu / (1 - nu * nu);
+    const double h = solid.thickness;
+    return {static_cast<Scalar>(h * plane), static_cast<Scalar>(h * mu),
+            static_cast<Scalar>(h * 4 * mu * (plane + mu) / (plane + 2 * mu)),
+            static_cast<Scalar>(plane / (plane + 2 * mu))};
+}
+
+/// Sets negative values to 0 and counts them; `touched` marks the springs that a cell gave something to.
+template <std::floating_point Scalar>
+ClosedForm<Scalar> close(Values<Scalar>&& stiffness, const std::vector<bool>& touched) {
+    ClosedForm<Scalar> result{std::move(stiffness), 0, 0};
+    for (Index e = 0; e < result.stiffness.size(); ++e) {
+        if (result.stiffness(e) < 0) {
+            result.stiffness(e) = 0;
+            ++result.n_clamped;
+        }
+        result.n_without_cell += touched[static_cast<std::size_t>(e)] ? 0 : 1;
+    }
+    return result;
+}
+
+} // namespace detail
+
+} // namespace springfit

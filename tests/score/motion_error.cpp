@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tolerance.hpp"
+
+#include <springfit/motion/record.hpp>
+#include <springfit/score/motion_error.hpp>
+
+#include "../step/example.hpp"
+
+using namespace springfit;
+
+namespace {
+
+template <int Dim, class Scalar>
+struct Cases {
+    std::vector<Scenario<Dim, Scalar>> scenarios;
+    std::vector<Motion<Dim, Scalar>> references;
+};
+
+/// Three load cases, the last a static one.
+template <int Dim, class Scalar>
+Cases<Dim, Scalar> cases(const SpringNetwork<Dim, Scalar>& network) {
+    Cases<Dim, Scalar> result;
+    for (int c = 0; c < 3; ++c) {
+        Scenario<Dim, Scalar> scenario;
+        scenario.name = text("case ", c);
+        scenario.clamps.push_back({{0, 1, 2, 3}, {}});
+        scenario.gravity.push_back({Vector<Dim, Scalar>::Unit(1) * Scalar(c == 1 ? 2 : -3), {}});
+        result.scenarios.push_back(scenario);
+        if (c < 2) {
+            result.references.push_back(record(network, scenario, {.dt = Scalar(0.02), .frames = 11}).motion);
+        } else {
+            Motion<Dim, Scalar> at_rest;
+            at_rest.name = scenario.name;
+            at_rest.rest_positions = network.rest_positions;
+            at_rest.clamped = {0, 1, 2, 3};
+            at_rest.times = {Scalar(0)};
+            at_rest.positions = {equilibrium(network, scenario).positions};
+            result.references.push_back(at_rest);
+        }
+    }
+    return result;
+}
+
+} // namespace
+
+TEST_CASE("the error is the root of summed squares over free nodes, frames and cases") {
+    Motion<2, double> reference;
+    reference.rest_positions.resize(2, 3);
+    reference.rest_positions << 0, 1, 2, 0, 0, 0;
+    reference.clamped = {1};
+    reference.times = {0, 1};
+    reference.positions = {reference.rest_positions, reference.rest_positions};
+    reference.positions[1](0, 0) += 3;
+    reference.positions[1](1, 2) += 4;
+    reference.positions[1](1, 1) += 100; // clamped: does not count
+    auto motion = reference;
+    motion.positions[0](0, 2) += 1;
+    motion.positions[1](1, 2) += 2;
+    motion.positions[1](1, 1) -= 50;
+    const auto one = motion_error<2, double>({motion}, {reference});
+    CHECK(test::relative(one.error, std::sqrt(5. / 25), 1.) < 1e-15);
+    auto other = reference;
+    other.positions[1](0, 0) += 2; // moves by 5 and 4
+    const auto two = motion_error<2, double>({motion, reference}, {reference, other});
+    CHECK(test::relative(two.error, std::sqrt((5. + 4) / (25 + 41)), 1.) < 1e-15);
+    CHECK(test::relative(two.case_errors[0], one.error, 1.) < 1e-15);
+    CHECK(test::relative(two.case_errors[1], std::sqrt(4. / 41), 1.) < 1e-15);
+    CHECK(two.status == Status::converged);
+    CHECK((motion_error<2, double>({reference}, {reference}).error) == 0);
+
+    motion.positions.pop_back();
+    const auto cut = motion_error<2, double>({reference, motion}, {reference, reference});
+    CHECK(std::isinf(cut.error));
+    CHECK(cut.case_errors[0] == 0);
+    CHECK(std::isinf(cut.case_errors[1]));
+    CHECK(cut.status == Status::diverged);
+    CHECK_THROWS_AS((void)(motion_error<2, double>({motion}, {reference, reference})), InvalidArgument);
+}
+
+TEST_CASE_TEMPLATE("a network has no error against itself and a plain one where its stiffness differs", T,
+                   SPRINGFIT_TEST_SPACES) {
+    constexpr int dim = T::dimension;
+    using Scalar = typename T::Scalar;
+    const auto network = test::random_network<dim, Scalar>(Scalar(0.001));
+    const auto set = cases<dim, Scalar>(network);
+    const auto same = motion_error(network, set.scenarios, set.references);
+    CHECK(same.status == Status::converged);
+    CHECK(same.error < static_cast<double>(test::rounding<Scalar>(1000)));
+    auto softer = network;
+    softer.stiffness *= Scalar(0.8);
+    const auto different = motion_error(softer, set.scenarios, set.references);
+    CHECK(different.error > 0.02);
+    CHECK(different.error < 1);
+    // The same by way of the recorded motions.
+    const auto dynamic = simulate(softer, set.scenarios[0], set.references[0].times);
+    CHECK(dynamic.status == Status::converged);
+    CHECK_NOTHROW(validate(dynamic.motion));
+    const auto by_motion = motion_error<dim, Scalar>({dynamic.motion}, {set.references[0]});
+    CHECK(test::relative(by_motion.error, different.case_errors[0], different.error) < 1e-12);
+    // Cases in any order, on any execution.
+    const Execution backwards([](Index n, const Execution::Chunk& body) {
+        for (Index c = n; c-- > 0;) {
+            body(c);
+        }
+    });
+    const auto again = motion_error(softer, set.scenarios, set.references, {}, {.execution = backwards});
+    CHECK(again.error == different.error);
+}
+
+TEST_CASE("frames may be at any times") {
+    const auto network = test::random_network<2, double>(0.001);
+    const auto scenario = test::thrown<2, double>(network, 0.05);
+    const auto even = simulate(network, scenario, {0., 0.1, 0.2, 0.3}, {}, {.step_fraction = 0.02});
+    const auto uneven = simulate(network, scenario, {0.05, 0.3}, {}, {.step_fraction = 0.02});
+    CHECK(uneven.motion.times == std::vector<double>{0.05, 0.3});
+    CHECK(test::relative_difference(uneven.motion.positions[1], even.motion.positions[3]) < 1e-3);
+    CHECK_THROWS_AS((void)simulate(network, scenario, {}), InvalidArgument);
+    CHECK_THROWS_AS((void)simulate(network, scenario, {0., 0.}), InvalidArgument);
+    CHECK_THROWS_AS((void)simulate(network, scenario, {-1., 0.}), InvalidArgument);
+    CHECK_THROWS_AS((void)simulate(network, scenario, {0., std::nan("")}), InvalidArgument);
+}
+
+TEST_CASE("networks that diverge or need too many steps are not scored, and say so") {
+    const auto network = test::random_network<3, double>(0.001);
+    auto set = cases<3, double>(network);
+    auto stiff = network;
+    stiff.stiffness *= 1e14;
+    const auto too_stiff = motion_error(stiff, set.scenarios, set.references);
+    CHECK(std::isinf(too_stiff.error));
+    CHECK(too_stiff.status == Status::iteration_limit);
+    CHECK(simulate(stiff, set.scenarios[0], set.references[0].times).motion.n_frames() == 0);
+
+    auto wild = set.scenarios;
+    wild[1].initial_velocities = Points<3, double>::Random(3, network.n_nodes()) * 1e170;
+    const auto diverged = motion_error(network, wild, set.references);
+    CHECK(std::isinf(diverged.error));
+    CHECK(diverged.status == Status::diverged);
+    CHECK(diverged.case_statuses == std::vector<Status>{Status::converged, Status::diverged, Status::converged});
+    CHECK(diverged.case_errors[0] < 1e-10);
+
+    // One mass on a string pulled across it has no equilibrium where the stiffness is 0.
+    auto slack = network;
+    slack.stiffness.setZero();
+    const auto falling = motion_error(slack, set.scenarios, set.references);
+    CHECK(std::isinf(falling.error));
+    CHECK(falling.case_statuses[0] == Status::converged); // it falls, but it is a motion
+    CHECK(falling.case_statuses[2] != Status::converged);
+}
+
+TEST_CASE("progress is told, and stops the scoring") {
+    const auto network = test::random_network<2, double>(0.001);
+    const auto set = cases<2, double>(network);
+    double last = 0;
+    int calls = 0;
+    const auto full = motion_error(network, set.scenarios, set.references, [&](const Progress& progress) {
+        CHECK(progress.fraction > last);
+        last = progress.fraction;
+        ++calls;
+        return true;
+    });
+    CHECK(full.status == Status::converged);
+    CHECK(last == 1);
+    CHECK(calls == 23);
+    int left = 5;
+    const auto stopped = motion_error(network, set.scenarios, set.references, [&](const Progress&) { return --left > 0; });
+    CHECK(stopped.status == Status::interrupted);
+    CHECK(std::isfinite(stopped.error));
+    CHECK(stopped.case_statuses[2] == Status::interrupted);
+    left = 3;
+    const auto cut = simulate(network, set.scenarios[0], set.references[0].times, [&](const Progress&) { return --left > 0; });
+    CHECK(cut.status == Status::interrupted);
+    CHECK(cut.motion.n_frames() == 3);
+}
+
+TEST_CASE("sets that do not fit together are refused") {
+    const auto network = test::random_network<2, double>(0);
+    auto set = cases<2, double>(network);
+    auto fewer = set.scenarios;
+    fewer.pop_back();
+    CHECK_THROWS_AS((void)motion_error(network, fewer, set.references), InvalidArgument);
+    set.references[0].rest_positions.conservativeResize(2, 3);
+    CHECK_THROWS_AS((void)motion_error(network, set.scenarios, set.references), InvalidArgument);
+}
