@@ -68,6 +68,11 @@ public:
     /// Elastic energy at positions x `[Dim x n_nodes]`, J; not finite where the material does not allow x.
     [[nodiscard]] Scalar energy(const Points<Dim, Scalar>& x) const;
 
+    /// How well `energy` is known, whatever the positions: its terms are of the size of E times volume, J.
+    [[nodiscard]] Scalar energy_rounding() const {
+        return 4 * std::numeric_limits<Scalar>::epsilon() * static_cast<Scalar>(m_material.young) * m_weights.sum();
+    }
+
     /// Gradient of the energy `[Dim x n_nodes]`, N: the force that has to act on the nodes to hold them at x.
     [[nodiscard]] Points<Dim, Scalar> internal_forces(const Points<Dim, Scalar>& x) const;
 

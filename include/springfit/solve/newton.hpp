@@ -7,11 +7,13 @@
 namespace springfit {
 
 /// A smooth function to minimise, with its derivatives; the energy may be infinite or NaN where x is not allowed.
+///
+/// Where the energy adds up much larger terms than itself, `energy_rounding()` tells how well it is known, in its unit.
 template <class P>
 concept SmoothProblem = requires(P problem, const Values<typename P::Scalar>& x, Values<typename P::Scalar>& gradient) {
     { problem.energy(x) } -> std::same_as<typename P::Scalar>;
     problem.gradient(x, gradient);
-    { problem.hessian(x) } -> std::convertible_to<const SparseMatrix<typename P::Scalar>&>; // lower triangle
+    { problem.hessian(x) } -> std::convertible_to<SymmetricMatrix<typename P::Scalar>>;
 };
 
 template <std::floating_point Scalar>
@@ -47,6 +49,10 @@ template <SmoothProblem P>
     Values<Scalar> step;
     Values<Scalar> trial;
     Values<Scalar> trial_gradient(x.size());
+    Scalar noise = 0;
+    if constexpr (requires { problem.energy_rounding(); }) {
+        noise = problem.energy_rounding();
+    }
     const auto largest = [](const Values<Scalar>& values) {
         return values.size() > 0 ? values.template lpNorm<Eigen::Infinity>() : Scalar(0);
     };
@@ -68,7 +74,7 @@ template <SmoothProblem P>
             return report;
         }
         const Scalar slope = gradient.dot(step);
-        const Scalar rounding = 16 * epsilon * std::max(std::abs(report.energy), std::abs(slope));
+        const Scalar rounding = std::max(noise, 16 * epsilon * std::max(std::abs(report.energy), std::abs(slope)));
         Scalar length = 1;
         bool accepted = false;
         for (int halving = 0; halving < 40 && slope < 0; ++halving, length /= 2) {

@@ -6,18 +6,24 @@
 
 #include <Eigen/SparseCholesky>
 
-#include <springfit/core/types.hpp>
+#include <springfit/solve/symmetric_matrix.hpp>
 
 namespace springfit {
 
-/// Solves A x = b for a sequence of symmetric matrices of one sparsity pattern (lower triangles).
+/// Solves A x = b for a sequence of symmetric matrices of one sparsity pattern (lower triangles, with any rank-one terms
+/// kept apart).
 ///
 /// The symbolic analysis is done once. A numeric factorisation is kept as the preconditioner of conjugate gradients for
 /// the matrices that follow, and is renewed when they take more than `max_cg_iterations`: near each other, as from one
-/// Newton or time step to the next, a few cheap iterations replace an expensive factorisation.
+/// Newton or time step to the next, a few cheap iterations replace an expensive factorisation. Well conditioned
+/// matrices, as of short time steps, need none: `set_max_diagonal_iterations` tries the diagonal as preconditioner first.
 ///
 /// A matrix that is not positive definite is shifted, A + s diag(|A|), until it is: the Newton direction then points
-/// downhill.
+/// downhill. (With the diagonal as preconditioner, the iterate before the negative curvature is returned instead, which
+/// also points downhill.) Rank-one terms are factorised as extra unknowns,
+///     [ L       B sqrt|w| ] [x]   [b]
+///     [ sym.   -sign w    ] [q] = [0],
+/// which fills much less than their product; the signs of the pivots tell whether A is positive definite.
 template <std::floating_point Scalar>
 class SymmetricSolver {
 public:
@@ -25,45 +31,70 @@ public:
     void reset() {
         m_analysed = false;
         m_factorised = false;
+        m_diagonal_suffices = true;
     }
 
     /// Allow 0 iterations to factorise every matrix anew.
     void set_max_cg_iterations(int iterations) { m_max_cg_iterations = iterations; }
 
+    /// Iterations with the diagonal as preconditioner that are tried before any factorisation; 0, the default: none.
+    /// The first matrix that needs more ends these attempts until `reset`.
+    void set_max_diagonal_iterations(int iterations) { m_max_diagonal_iterations = iterations; }
+
     /// The solution to a relative residual of `tolerance`; false where no factorisation could be had.
-    [[nodiscard]] bool solve(const SparseMatrix<Scalar>& lower, const Values<Scalar>& b, Values<Scalar>& x,
+    [[nodiscard]] bool solve(const SymmetricMatrix<Scalar>& a, const Values<Scalar>& b, Values<Scalar>& x,
                              Scalar tolerance) {
-        if (m_factorised && m_max_cg_iterations > 0 && conjugate_gradients(lower, b, x, tolerance)) {
+        if (m_max_diagonal_iterations > 0 && m_diagonal_suffices) {
+            const Values<Scalar> inverse =
+                a.diagonal().unaryExpr([](Scalar d) { return d > 0 ? 1 / d : Scalar(1); });
+            const auto outcome = conjugate_gradients(
+                a, b, x, tolerance, m_max_diagonal_iterations,
+                [&](const Values<Scalar>& r, Values<Scalar>& z) { z = inverse.cwiseProduct(r); });
+            if (outcome == Outcome::solved || (outcome == Outcome::indefinite && b.dot(x) > 0)) {
+                return true;
+            }
+            m_diagonal_suffices = false;
+        }
+        if (m_factorised && m_max_cg_iterations > 0 &&
+            conjugate_gradients(a, b, x, tolerance, m_max_cg_iterations,
+                                [&](const Values<Scalar>& r, Values<Scalar>& z) { z = apply_factor(r); }) ==
+                Outcome::solved) {
             return true;
         }
-        if (!factorise(lower)) {
+        if (!factorise(a)) {
             return false;
         }
-        x = m_factor.solve(b);
+        x = apply_factor(b);
         return x.allFinite();
     }
 
     /// Factorises anew. The shift that made the matrix positive definite is `shift()`, 0 where none was needed.
-    [[nodiscard]] bool factorise(const SparseMatrix<Scalar>& lower) {
+    [[nodiscard]] bool factorise(const SymmetricMatrix<Scalar>& a) {
+        SparseMatrix<Scalar> extended;
+        if (a.n_terms() > 0) {
+            extend(a, extended);
+        }
+        const SparseMatrix<Scalar>& matrix = a.n_terms() > 0 ? extended : a.lower();
         if (!m_analysed) {
-            m_factor.analyzePattern(lower);
+            m_factor.analyzePattern(matrix);
             m_analysed = true;
         }
         m_shift = 0;
         m_factorised = false;
-        for (int attempt = 0; attempt < 20; ++attempt) {
+        m_size = a.size();
+        for (int attempt = 0; attempt < 10; ++attempt) {
             if (attempt == 0) {
-                m_factor.factorize(lower);
+                m_factor.factorize(matrix);
             } else {
-                m_shift = (m_shift > 0) ? 10 * m_shift : std::sqrt(std::numeric_limits<Scalar>::epsilon());
-                SparseMatrix<Scalar> shifted = lower;
-                for (Index i = 0; i < shifted.cols(); ++i) {
+                m_shift = (m_shift > 0) ? 100 * m_shift : std::sqrt(std::numeric_limits<Scalar>::epsilon());
+                SparseMatrix<Scalar> shifted = matrix;
+                for (Index i = 0; i < m_size; ++i) {
                     Scalar& diagonal = shifted.valuePtr()[shifted.outerIndexPtr()[i]];
                     diagonal += m_shift * std::max(std::abs(diagonal), std::numeric_limits<Scalar>::min());
                 }
                 m_factor.factorize(shifted);
             }
-            if (m_factor.info() == Eigen::Success) {
+            if (m_factor.info() == Eigen::Success && pivots_agree(a)) {
                 m_factorised = true;
                 ++m_n_factorisations;
                 return true;
@@ -73,46 +104,94 @@ public:
     }
 
     /// Applies the present factorisation.
-    [[nodiscard]] Values<Scalar> apply_factor(const Values<Scalar>& b) const { return m_factor.solve(b); }
+    [[nodiscard]] Values<Scalar> apply_factor(const Values<Scalar>& b) const {
+        if (m_factor.rows() == b.size()) {
+            return m_factor.solve(b);
+        }
+        Values<Scalar> extended = Values<Scalar>::Zero(m_factor.rows());
+        extended.head(b.size()) = b;
+        return m_factor.solve(extended).eval().head(b.size());
+    }
 
     [[nodiscard]] Scalar shift() const { return m_shift; }
     [[nodiscard]] int n_factorisations() const { return m_n_factorisations; }
 
 private:
-    bool conjugate_gradients(const SparseMatrix<Scalar>& lower, const Values<Scalar>& b, Values<Scalar>& x,
-                             Scalar tolerance) {
-        const auto matrix = lower.template selfadjointView<Eigen::Lower>();
+    enum class Outcome { solved, slow, indefinite };
+
+    template <class Preconditioner>
+    static Outcome conjugate_gradients(const SymmetricMatrix<Scalar>& a, const Values<Scalar>& b, Values<Scalar>& x,
+                                       Scalar tolerance, int max_iterations, const Preconditioner& precondition) {
         const Scalar goal = tolerance * b.norm();
         x = Values<Scalar>::Zero(b.size());
         Values<Scalar> residual = b;
-        Values<Scalar> z = m_factor.solve(residual);
+        Values<Scalar> z(b.size());
+        Values<Scalar> product(b.size());
+        precondition(residual, z);
         Values<Scalar> direction = z;
         Scalar rz = residual.dot(z);
-        for (int iteration = 0; iteration < m_max_cg_iterations; ++iteration) {
+        for (int iteration = 0; iteration < max_iterations; ++iteration) {
             if (residual.norm() <= goal) {
-                return true;
+                return Outcome::solved;
             }
-            const Values<Scalar> product = matrix * direction;
+            a.multiply(direction, product);
             const Scalar curvature = direction.dot(product);
-            if (!(curvature > 0)) {
-                return false; // not positive definite (or not finite): leave it to the factorisation
+            if (!(curvature > 0)) { // not positive definite (or not finite)
+                return Outcome::indefinite;
             }
             const Scalar alpha = rz / curvature;
             x += alpha * direction;
             residual -= alpha * product;
-            z = m_factor.solve(residual);
+            precondition(residual, z);
             const Scalar rz_next = residual.dot(z);
             direction = z + (rz_next / rz) * direction;
             rz = rz_next;
         }
-        return residual.norm() <= goal;
+        return residual.norm() <= goal ? Outcome::solved : Outcome::slow;
     }
 
-    Eigen::SimplicialLLT<SparseMatrix<Scalar>, Eigen::Lower> m_factor;
+    /// Lower triangle of the matrix with one more unknown per rank-one term. Its pattern depends on that of `a` alone.
+    static void extend(const SymmetricMatrix<Scalar>& a, SparseMatrix<Scalar>& extended) {
+        const Index n = a.size();
+        const Index terms = a.n_terms();
+        const SparseMatrix<Scalar> rows = a.columns().transpose();
+        extended.resize(n + terms, n + terms);
+        extended.reserve(a.lower().nonZeros() + rows.nonZeros() + terms);
+        for (Index i = 0; i < n; ++i) {
+            extended.startVec(i);
+            for (typename SparseMatrix<Scalar>::InnerIterator entry(a.lower(), i); entry; ++entry) {
+                extended.insertBack(entry.row(), i) = entry.value();
+            }
+            for (typename SparseMatrix<Scalar>::InnerIterator entry(rows, i); entry; ++entry) {
+                extended.insertBack(n + entry.row(), i) =
+                    entry.value() * std::sqrt(std::abs(a.weight(entry.row())));
+            }
+        }
+        for (Index p = 0; p < terms; ++p) {
+            extended.startVec(n + p);
+            extended.insertBack(n + p, n + p) = a.weight(p) < 0 ? Scalar(1) : Scalar(-1);
+        }
+        extended.finalize();
+    }
+
+    /// True where A is positive definite: as many negative pivots as terms of positive weight.
+    [[nodiscard]] bool pivots_agree(const SymmetricMatrix<Scalar>& a) const {
+        const Values<Scalar> pivots = m_factor.vectorD();
+        Index expected = 0;
+        for (Index p = 0; p < a.n_terms(); ++p) {
+            expected += a.weight(p) < 0 ? 0 : 1;
+        }
+        return pivots.allFinite() && (pivots.array() < 0).count() == expected;
+    }
+
+    Eigen::SimplicialLDLT<SparseMatrix<Scalar>, Eigen::Lower> m_factor;
     bool m_analysed = false;
     bool m_factorised = false;
+    bool m_diagonal_suffices = true;
     int m_max_cg_iterations = 12;
+    int m_max_diagonal_iterations = 0;
     int m_n_factorisations = 0;
+    Index m_size = 0;
     Scalar m_shift = 0;
 };
 

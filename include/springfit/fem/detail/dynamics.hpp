@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <springfit/fem/detail/statics.hpp>
+#include <springfit/fem/dynamics.hpp>
+
+namespace springfit::fem {
+
+/// The potential whose minimum is the next step. With d = x - x_predicted and v(x) = v_predicted + c1 d (at clamped nodes
+/// both predictions are the prescribed values, so that d = 0),
+///     Phi = c0/2 d'Md + (1 + alpha) [W(x) - f_ext . d + v_predicted' D d + c1/2 d'Dd] + alpha (M a_n) . d
+template <class M>
+class Dynamics<M>::StepProblem {
+public:
+    using Scalar = typename M::Scalar;
+
+    StepProblem(Dynamics& dynamics, Scalar dt) : m_dynamics(&dynamics) {
+        const Scalar alpha = dynamics.m_options.alpha;
+        const Scalar beta = (1 - alpha) * (1 - alpha) / 4;
+        c0 = 1 / (beta * dt * dt);
+        c1 = (Scalar(0.5) - alpha) / (beta * dt);
+        weight = 1 + alpha;
+    }
+
+    Scalar c0;
+    Scalar c1;
+    Scalar weight;
+    Nodes positions;            ///< of all nodes; the clamped ones stay as set
+    Nodes predicted;            ///< x_predicted
+    Nodes predicted_velocities; ///< v_predicted
+    Nodes constant;             ///< forces that do not depend on x: the gradient at d = 0 without inertia and W
+
+    [[nodiscard]] Scalar energy(const Values<Scalar>& values) {
+        const Nodes d = displacement(values);
+        const auto& model = m_dynamics->m_model;
+        const Nodes inertia_and_damping = c0 * d * model.masses().asDiagonal() + weight * c1 * m_dynamics->damped(d);
+        return weight * model.energy(positions) + inertia_and_damping.cwiseProduct(d).sum() / 2 +
+               constant.cwiseProduct(d).sum();
+    }
+    [[nodiscard]] Scalar energy_rounding() const { return m_dynamics->m_model.energy_rounding(); }
+    void gradient(const Values<Scalar>& values, Values<Scalar>& gradient) {
+        const Nodes d = displacement(values);
+        const auto& model = m_dynamics->m_model;
+        const Nodes total = weight * (model.internal_forces(positions) + c1 * m_dynamics->damped(d)) +
+                            c0 * d * model.masses().asDiagonal() + constant;
+        gradient = m_dynamics->m_free.template gather<dimension, Scalar>(total);
+    }
+    /// With K(x) for K(x_n) in the damping: they differ little, and one matrix serves for both.
+    [[nodiscard]] SymmetricMatrix<Scalar> hessian(const Values<Scalar>& values) {
+        m_dynamics->m_free.scatter(values, positions);
+        const auto& model = m_dynamics->m_model;
+        model.assemble(positions, m_dynamics->m_stiffness);
+        m_dynamics->m_stiffness.combine(weight * (1 + c1 * model.options().stiffness_damping),
+                                        c0 + weight * c1 * model.options().mass_damping, model.masses());
+        return m_dynamics->m_stiffness.matrix();
+    }
+
+private:
+    [[nodiscard]] Nodes displacement(const Values<Scalar>& values) {
+        m_dynamics->m_free.scatter(values, positions);
+        return positions - predicted;
+    }
+
+    Dynamics* m_dynamics;
+};
+
+template <class M>
+Dynamics<M>::Dynamics(M model, const DynamicsOptions<Scalar>& options)
+    : m_model(std::move(model)), m_options(options) {
+    require(options.alpha >= Scalar(-1) / 3 && options.alpha <= 0, "alpha", "a value in [-1/3, 0]", options.alpha);
+    require(options.tolerance > 0 && options.tolerance < 1, "tolerance", "a value in (0, 1)", options.tolerance);
+    require(options.max_iterations >= 1, "max_iterations", "at least one iteration", options.max_iterations);
+    require(options.max_halvings >= 0, "max_halvings", "a number not below 0", options.max_halvings);
+    m_free = FreeNodes(m_model.rest_positions().cols(), {});
+    m_stiffness = m_model.make_stiffness(m_free);
+    if (m_model.options().stiffness_damping > 0) {
+        m_damping = m_stiffness;
+    }
+    m_model.assemble(m_model.rest_positions(), m_stiffness);
+    m_stiffest = m_stiffness.matrix().diagonal().maxCoeff();
+    m_solver.set_max_diagonal_iterations(detail::diagonal_iterations);
+}
+
+template <class M>
+void Dynamics<M>::use_clamps(const Scenario<dimension, Scalar>& scenario) {
+    std::vector<int> clamped = clamped_nodes(scenario, m_model.rest_positions().cols());
+    if (clamped != m_clamped) {
+        m_clamped = std::move(clamped);
+        m_free = FreeNodes(m_model.rest_positions().cols(), m_clamped);
+        m_stiffness = m_model.make_stiffness(m_free);
+        m_solver.reset();
+    }
+}
+
+/// Assembles the stiffness part of the damping at these positions, unless it is there already.
+template <class M>
+void Dynamics<M>::take_damping(const Nodes& positions) {
+    if (m_model.options().stiffness_damping > 0 &&
+        (m_damping_at.size() == 0 || m_damping_at != positions)) {
+        m_model.assemble(positions, m_damping);
+        m_damping_at = positions;
+    }
+}
+
+/// D v for velocities of all nodes, N.
+template <class M>
+auto Dynamics<M>::damped(const Nodes& velocities) const -> Nodes {
+    Nodes forces = m_model.options().mass_damping * velocities * m_model.masses().asDiagonal();
+    if (m_model.options().stiffness_damping > 0) {
+        Values<Scalar> product;
+        m_damping.matrix().multiply(velocities.reshaped(), product);
+        forces.reshaped() += m_model.options().stiffness_damping * product;
+    }
+    return forces;
+}
+
+/// Sets the accelerations of the free nodes from the balance of forces at the state itself.
+template <class M>
+void Dynamics<M>::balance(State<dimension, Scalar>& state, const Scenario<dimension, Scalar>& scenario) {
+    take_damping(state.positions);
+    const Nodes forces = external_forces<dimension, Scalar>(scenario, m_model.masses(), state.time) -
+                         m_model.internal_forces(state.positions) - damped(state.velocities);
+    for (int node : m_free.nodes()) {
+        state.accelerations.col(node) = forces.col(node) / m_model.masses()(node);
+    }
+}
+
+template <class M>
+auto Dynamics<M>::start(const Scenario<dimension, Scalar>& scenario) -> State<dimension, Scalar> {
+    springfit::validate(scenario, m_model.rest_positions().cols());
+    use_clamps(scenario);
+    State<dimension, Scalar> state;
+    state.positions = initial_positions<dimension, Scalar>(scenario, m_model.rest_positions());
+    state.velocities = initial_velocities<dimension, Scalar>(scenario, m_model.rest_positions());
+    state.accelerations.setZero(dimension, state.positions.cols());
+    balance(state, scenario);
+    m_last = state;
+    return state;
+}
+
+template <class M>
+Status Dynamics<M>::advance(State<dimension, Scalar>& state, const Scenario<dimension, Scalar>& scenario, Scalar dt) {
+    require(dt > 0 && std::isfinite(dt), "dt", "a positive time step", dt);
+    require(state.positions.cols() == m_model.rest_positions().cols(), "state",
+            text(m_model.rest_positions().cols(), " nodes"), state.positions.cols());
+    use_clamps(scenario);
+    State<dimension, Scalar> moved = state;
+    const Status status = step(moved, scenario, dt, m_options.max_halvings);
+    if (status == Status::converged) {
+        state = std::move(moved);
+    }
+    return status;
+}
+
+template <class M>
+Status Dynamics<M>::step(State<dimension, Scalar>& state, const Scenario<dimension, Scalar>& scenario, Scalar dt,
+                         int halvings) {
+    const Status status = attempt(state, scenario, dt);
+    if (status == Status::converged || halvings == 0) {
+        return status;
+    }
+    const Status first = step(state, scenario, dt / 2, halvings - 1);
+    return first == Status::converged ? step(state, scenario, dt / 2, halvings - 1) : first;
+}
+
+template <class M>
+Status Dynamics<M>::attempt(State<dimension, Scalar>& state, const Scenario<dimension, Scalar>& scenario, Scalar dt) {
+    const auto masses = m_model.masses().asDiagonal();
+    const Scalar time = state.time + dt;
+    const Scalar alpha = m_options.alpha;
+    const bool goes_on = m_last.positions.size() > 0 && m_last.time == state.time &&
+                         m_last.positions == state.positions && m_last.velocities == state.velocities;
+    const Nodes accelerations = goes_on ? m_last.accelerations : state.accelerations; // A_n
+    take_damping(state.positions);
+
+    StepProblem problem(*this, dt);
+    const Scalar inertia_share = 1 / (problem.c0 * dt * dt); // beta
+    problem.predicted =
+        state.positions + dt * state.velocities + dt * dt * (Scalar(0.5) - inertia_share) * accelerations;
+    problem.predicted_velocities = state.velocities + dt * (Scalar(0.5) + alpha) * accelerations; // 1 - gamma
+    Nodes clamped_accelerations = Nodes::Zero(dimension, state.positions.cols());
+    for (const auto& clamp : scenario.clamps) {
+        for (int node : clamp.nodes) {
+            const Vector<dimension, Scalar> rest = m_model.rest_positions().col(node);
+            const auto at = [&](Scalar t) -> Vector<dimension, Scalar> {
+                return clamp.position ? clamp.position(rest, t) : rest;
+            };
+            const Scalar h = dt / 2;
+            const Vector<dimension, Scalar> here = at(time);
+            const Vector<dimension, Scalar> ahead = at(time + h);
+            const Vector<dimension, Scalar> behind = at(time - h);
+            problem.predicted.col(node) = here;
+            problem.predicted_velocities.col(node) = (ahead - behind) / (2 * h);
+            clamped_accelerations.col(node) = (ahead - 2 * here + behind) / (h * h);
+        }
+    }
+    const Nodes loads = external_forces<dimension, Scalar>(scenario, m_model.masses(), time);
+    problem.constant = problem.weight * (damped(problem.predicted_velocities) - loads) +
+                       alpha * state.accelerations * masses;
+
+    // Start where constant acceleration leads, or where the body is if that is not allowed.
+    problem.positions = problem.predicted;
+    for (int node : m_free.nodes()) {
+        problem.positions.col(node) += dt * dt * inertia_share * accelerations.col(node);
+    }
+    Values<Scalar> x = m_free.template gather<dimension, Scalar>(problem.positions);
+    if (!std::isfinite(problem.energy(x))) {
+        x = m_free.template gather<dimension, Scalar>(state.positions);
+    }
+
+    const auto largest = [](const Nodes& nodes) { return nodes.cwiseAbs().maxCoeff(); };
+    const Scalar scale =
+        std::max(std::max(largest(loads), largest(m_model.internal_forces(state.positions))),
+                 std::max(largest(accelerations * masses), largest(state.velocities * masses) / dt));
+    const Scalar rounding = 8 * std::numeric_limits<Scalar>::epsilon() *
+                            (problem.c0 * m_model.masses().maxCoeff() + m_stiffest) * largest(state.positions);
+    NewtonOptions<Scalar> newton{.max_iterations = m_options.max_iterations};
+    newton.gradient_tolerance = std::max(m_options.tolerance * scale, rounding);
+    newton.linear_tolerance = Scalar(1e-3);
+    const auto report = minimise(problem, x, m_solver, newton);
+    m_iterations += report.iterations;
+    const bool done = report.status == Status::converged ||
+                      (report.status == Status::stalled && report.gradient_max <= 10 * newton.gradient_tolerance);
+    if (!done) {
+        return report.status;
+    }
+
+    m_free.scatter(x, problem.positions);
+    const Nodes d = problem.positions - problem.predicted;
+    state.time = time;
+    state.positions = problem.positions;
+    state.velocities = problem.predicted_velocities + problem.c1 * d;
+    state.accelerations = clamped_accelerations;
+    m_last = state;
+    for (int node : m_free.nodes()) {
+        m_last.accelerations.col(node) = problem.c0 * d.col(node);
+    }
+    balance(state, scenario);
+    return Status::converged;
+}
+
+} // namespace springfit::fem
