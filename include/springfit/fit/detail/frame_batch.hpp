@@ -17,7 +17,7 @@ public:
     static constexpr int lanes = 32;
     static constexpr int rows = Dim * lanes; ///< equations of one node in one batch
     using Lanes = Eigen::Array<double, lanes, 1>;
-    using ConstLanes = Eigen::Map<const Lanes, Eigen::Aligned32>;
+    using ConstLanes = Eigen::Map<const Lanes, Eigen::AlignedMax>;
 
     FrameBatch() = default;
     FrameBatch(Index n_nodes, bool velocities)

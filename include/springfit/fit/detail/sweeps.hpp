@@ -38,12 +38,14 @@ public:
         }
     }
 
-    /// Visits every block once, the one with the largest terms first.
-    void sweep() {
+    /// Visits every block once, the one with the largest terms first; returns by how much Phi fell, >= 0.
+    double sweep() {
         m_heap.fill(m_dominance);
+        double fall = 0;
         while (!m_heap.empty()) {
-            visit(m_blocks[static_cast<std::size_t>(m_heap.pop())]);
+            fall += visit(m_blocks[static_cast<std::size_t>(m_heap.pop())]);
         }
+        return fall;
     }
 
 private:
@@ -110,17 +112,21 @@ private:
         }
     }
 
-    /// Minimises Phi over one block, from where it is.
-    void visit(const Block& block) {
+    /// Minimises Phi over one block, from where it is; returns by how much it fell, summed without cancellation.
+    double visit(const Block& block) {
         const auto n = static_cast<Index>(block.columns.size());
         if (n == 0) {
-            return;
+            return 0;
         }
         m_step.setZero(n);
         m_linear = -m_gradient(block.columns).cwiseQuotient(block.root);
         m_lower = (m_problem.lower(block.columns) - m_theta(block.columns)).cwiseProduct(block.root);
         m_upper = (m_problem.upper(block.columns) - m_theta(block.columns)).cwiseProduct(block.root);
         m_solver.solve(block.hessian, m_linear, m_lower, m_upper, m_step);
+        const double fall = m_step.dot(m_linear - 0.5 * block.hessian * m_step);
+        if (!(fall > 0)) {
+            return 0; // nothing but rounding
+        }
         m_touched.clear();
         for (Index p = 0; p < n; ++p) {
             const int u = block.columns[static_cast<std::size_t>(p)];
@@ -139,6 +145,7 @@ private:
         for (int touched : m_touched) {
             m_heap.update(touched, m_dominance[static_cast<std::size_t>(touched)]);
         }
+        return fall;
     }
 
     /// Carries a change of one unknown through the node terms that it occurs in.
@@ -201,6 +208,8 @@ inline FitReport dominant_term(const FitProblem& problem, const DominantTermOpti
     detail::BlockDescent descent(problem, report.theta);
     double value = report.objective_start;
     double residual = kkt_residual(problem, report.theta);
+    const double rounding = std::numeric_limits<double>::epsilon() *
+                            problem.objective.value(Values<double>::Zero(problem.n_unknowns()));
     while (true) {
         if (residual <= options.tolerance) {
             report.status = Status::converged;
@@ -209,18 +218,18 @@ inline FitReport dominant_term(const FitProblem& problem, const DominantTermOpti
         if (report.iterations == options.max_sweeps) {
             break;
         }
-        descent.sweep();
-        descent.refresh();
-        ++report.iterations;
-        const double next = problem.objective.value(descent.theta());
-        if (!(next <= value)) { // only rounding is left
+        const double fall = descent.sweep();
+        const double next = kkt_residual(problem, descent.theta());
+        if (fall <= rounding && !(next < residual)) {
             report.status = Status::stalled;
             break;
         }
-        value = next;
+        descent.refresh();
+        ++report.iterations;
+        value = std::max(value - fall, 0.);
+        residual = next;
         report.theta = descent.theta();
         report.history.push_back(value);
-        residual = kkt_residual(problem, report.theta);
         if (!go_on(options.progress, "dominant term", static_cast<double>(report.iterations) / options.max_sweeps)) {
             report.status = Status::interrupted;
             break;

@@ -97,6 +97,8 @@ inline void snap(const ScaledProblem& scaled, const BoxProgram& program, Values<
 inline FitReport exact(const FitProblem& problem, const ExactOptions& options) {
     require(options.tolerance > 0 && options.tolerance < 1, "tolerance", "a value in (0, 1)", options.tolerance);
     require(options.max_iterations >= 0, "max_iterations", "a number not below 0", options.max_iterations);
+    require(options.print_level >= 0 && options.print_level <= 12, "print_level", "a number from 0 to 12",
+            options.print_level);
     require(options.initial.size() == 0 || options.initial.size() == problem.n_unknowns(), "initial",
             text(problem.n_unknowns(), " values, one per unknown"), options.initial.size());
     require(options.initial.allFinite(), "initial", "finite values", "a value that is not finite");
