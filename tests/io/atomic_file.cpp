@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "files.hpp"
 
-#include <csignal>
-
-#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <springfit/io/atomic_file.hpp>
@@ -12,28 +9,11 @@ using namespace springfit;
 using namespace springfit::io;
 using springfit::test::content;
 using springfit::test::file_error;
+using springfit::test::FileSizeLimit;
 using springfit::test::put;
 using springfit::test::ScratchFolder;
 
 namespace {
-
-/// While it lives, no file can grow beyond `bytes`: writing on fails as on a full disk.
-class FileSizeLimit {
-public:
-    explicit FileSizeLimit(rlim_t bytes) : m_previous_handler(std::signal(SIGXFSZ, SIG_IGN)) {
-        ::getrlimit(RLIMIT_FSIZE, &m_previous);
-        const rlimit limit{bytes, m_previous.rlim_max};
-        REQUIRE(::setrlimit(RLIMIT_FSIZE, &limit) == 0);
-    }
-    ~FileSizeLimit() {
-        ::setrlimit(RLIMIT_FSIZE, &m_previous);
-        std::signal(SIGXFSZ, m_previous_handler);
-    }
-
-private:
-    void (*m_previous_handler)(int);
-    rlimit m_previous{};
-};
 
 /// A folder that nobody can write to, not even root.
 const std::filesystem::path unwritable = "/proc/self/task";

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include <stdlib.h>
+#include <sys/resource.h>
 
 #include <doctest/doctest.h>
 #include <springfit/core/error.hpp>
@@ -44,6 +46,24 @@ public:
 
 private:
     std::filesystem::path m_path;
+};
+
+/// While it lives, no file can grow beyond `bytes`: writing on fails as on a full disk.
+class FileSizeLimit {
+public:
+    explicit FileSizeLimit(rlim_t bytes) : m_previous_handler(std::signal(SIGXFSZ, SIG_IGN)) {
+        ::getrlimit(RLIMIT_FSIZE, &m_previous);
+        const rlimit limit{bytes, m_previous.rlim_max};
+        REQUIRE(::setrlimit(RLIMIT_FSIZE, &limit) == 0);
+    }
+    ~FileSizeLimit() {
+        ::setrlimit(RLIMIT_FSIZE, &m_previous);
+        std::signal(SIGXFSZ, m_previous_handler);
+    }
+
+private:
+    void (*m_previous_handler)(int);
+    rlimit m_previous{};
 };
 
 [[nodiscard]] inline std::string content(const std::filesystem::path& path) {

@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <springfit/io/detail/atomic_file.hpp>
+#include <springfit/io/hdf5.hpp>
+
+namespace springfit::io::hdf5 {
+
+namespace detail {
+
+/// While it lives, HDF5 prints no errors; afterwards it does what it did before.
+class Quiet {
+public:
+    Quiet() {
+        H5Eget_auto2(H5E_DEFAULT, &m_print, &m_data);
+        H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    }
+    Quiet(const Quiet&) = delete;
+    Quiet& operator=(const Quiet&) = delete;
+    ~Quiet() { H5Eset_auto2(H5E_DEFAULT, m_print, m_data); }
+
+private:
+    H5E_auto2_t m_print = nullptr;
+    void* m_data = nullptr;
+};
+
+/// What HDF5 says of the last error: the system's reason where there is one.
+[[nodiscard]] inline std::string last_error() {
+    std::string innermost;
+    const auto visit = [](unsigned depth, const H5E_error2_t* error, void* result) -> herr_t {
+        if (depth == 0 && error->desc != nullptr) {
+            *static_cast<std::string*>(result) = error->desc;
+        }
+        return 0;
+    };
+    H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, visit, &innermost);
+    constexpr std::string_view mark = "error message = '";
+    if (const auto begin = innermost.find(mark); begin != std::string::npos) {
+        const auto reason = innermost.substr(begin + mark.size());
+        return reason.substr(0, reason.find('\''));
+    }
+    return innermost.empty() ? "HDF5 gives no reason" : innermost;
+}
+
+template <class T>
+[[nodiscard]] hid_t memory_type() {
+    if constexpr (std::is_same_v<T, double>) {
+        return H5T_NATIVE_DOUBLE;
+    } else if constexpr (std::is_same_v<T, float>) {
+        return H5T_NATIVE_FLOAT;
+    } else {
+        static_assert(std::is_same_v<T, int>, "arrays of double, float and int");
+        return H5T_NATIVE_INT;
+    }
+}
+
+/// Floating-point numbers are stored as float64, whole numbers as int32, in the byte order of x86 and Arm.
+template <class T>
+[[nodiscard]] hid_t file_type() {
+    return std::is_floating_point_v<T> ? H5T_IEEE_F64LE : H5T_STD_I32LE;
+}
+
+[[nodiscard]] inline Handle simple_space(const Shape& shape, const Shape& maximum) {
+    return {H5Screate_simple(static_cast<int>(shape.size()), shape.data(), maximum.data()), H5Sclose};
+}
+
+/// Refuses what cannot be read as numbers of type T.
+template <class T>
+void check_type(const File& file, const std::string& dataset, const Handle& handle) {
+    const Handle type(H5Dget_type(handle.get()), H5Tclose);
+    const H5T_class_t found = H5Tget_class(type.get());
+    const bool accepted = found == H5T_INTEGER || (std::is_floating_point_v<T> && found == H5T_FLOAT);
+    if (!accepted) {
+        file.refuse(dataset, std::is_floating_point_v<T> ? "expected numbers" : "expected whole numbers");
+    }
+}
+
+[[nodiscard]] inline Shape shape_of(const Handle& dataset) {
+    const Handle space(H5Dget_space(dataset.get()), H5Sclose);
+    const int rank = H5Sget_simple_extent_ndims(space.get());
+    Shape shape(static_cast<std::size_t>(std::max(rank, 0)));
+    H5Sget_simple_extent_dims(space.get(), shape.data(), nullptr);
+    return shape;
+}
+
+} // namespace detail
+
+inline std::string to_text(const Shape& shape) {
+    std::string result = "[";
+    for (std::size_t axis = 0; axis < shape.size(); ++axis) {
+        result += text(axis > 0 ? " x " : "", shape[axis]);
+    }
+    return result + "]";
+}
+
+inline bool Handle::close() noexcept {
+    if (!is_open()) {
+        return true;
+    }
+    const detail::Quiet quiet;
+    return m_close(std::exchange(m_id, -1)) >= 0;
+}
+
+inline Room::Room(const std::filesystem::path& path, std::string shown)
+    : m_descriptor(path, O_RDWR | O_CREAT), m_name(std::move(shown)) {
+    if (!m_descriptor.is_open()) {
+        throw FileError(m_name, text("cannot be created: ", io::detail::reason(errno)));
+    }
+}
+
+inline void Room::make(hid_t object, hsize_t bytes) {
+    haddr_t given_out = 0;
+    if (object >= 0) {
+        const Handle file(H5Iget_file_id(object), H5Fclose);
+        H5Fget_eoa(file.get(), &given_out);
+    }
+    constexpr hsize_t beside = 1 << 20; // HDF5's own notes, and a chunk of each series that is still in memory
+    const hsize_t size = given_out + bytes + beside;
+    if (size <= m_size) {
+        return;
+    }
+    if (const int error = ::posix_fallocate(m_descriptor.get(), 0, static_cast<off_t>(size)); error != 0) {
+        throw FileError(m_name, text("cannot be written: ", io::detail::reason(error)));
+    }
+    m_size = size;
+}
+
+inline void Room::trim(hsize_t size) {
+    if (::ftruncate(m_descriptor.get(), static_cast<off_t>(size)) != 0) {
+        throw FileError(m_name, text("cannot be written: ", io::detail::reason(errno)));
+    }
+}
+
+inline File File::create(const std::filesystem::path& path, std::string shown) {
+    const detail::Quiet quiet;
+    Room(path, shown).make(-1, 0);
+    Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+    if (!file.is_open()) {
+        throw FileError(shown, text("cannot be created: ", detail::last_error()));
+    }
+    auto room = std::make_shared<Room>(path, shown); // truncated with the file: made anew
+    room->make(file.get(), 0);
+    return {std::move(file), std::move(room), std::move(shown)};
+}
+
+inline File File::open(const std::filesystem::path& path) {
+    std::error_code error;
+    if (!std::filesystem::exists(path, error)) {
+        throw FileError(path.string(), "no such file");
+    }
+    if (!is_hdf5(path)) {
+        throw FileError(path.string(), "is not an HDF5 file, or is damaged");
+    }
+    const detail::Quiet quiet;
+    Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    if (!file.is_open()) {
+        throw FileError(path.string(), text("cannot be read: ", detail::last_error()));
+    }
+    return {std::move(file), nullptr, path.string()};
+}
+
+inline bool File::is_hdf5(const std::filesystem::path& path) {
+    const detail::Quiet quiet;
+    return H5Fis_hdf5(path.c_str()) > 0;
+}
+
+inline bool File::has(const std::string& dataset) const {
+    const detail::Quiet quiet;
+    for (std::size_t end = 0; end != std::string::npos;) {
+        end = dataset.find('/', end + 1);
+        if (H5Lexists(m_file.get(), dataset.substr(0, end).c_str(), H5P_DEFAULT) <= 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+inline Handle File::open_dataset(const std::string& dataset) const {
+    if (!has(dataset)) {
+        refuse(dataset, "is missing");
+    }
+    const detail::Quiet quiet;
+    Handle handle(H5Dopen2(m_file.get(), dataset.c_str(), H5P_DEFAULT), H5Dclose);
+    if (!handle.is_open()) {
+        refuse(dataset, text("cannot be read: ", detail::last_error()));
+    }
+    return handle;
+}
+
+inline Handle File::create_dataset(const std::string& dataset, hid_t type, hid_t space, hid_t properties,
+                                    hid_t access) const {
+    const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+    H5Pset_create_intermediate_group(links.get(), 1);
+    Handle handle(H5Dcreate2(m_file.get(), dataset.c_str(), type, space, links.get(), properties, access), H5Dclose);
+    if (!handle.is_open()) {
+        refuse(dataset, text("cannot be written: ", detail::last_error()));
+    }
+    return handle;
+}
+
+inline Shape File::shape(const std::string& dataset) const { return detail::shape_of(open_dataset(dataset)); }
+
+template <class T>
+void File::write(const std::string& dataset, const T* values, const Shape& shape) {
+    const detail::Quiet quiet;
+    hsize_t bytes = sizeof(double);
+    for (const hsize_t size : shape) {
+        bytes *= size;
+    }
+    make_room(bytes);
+    const Handle space = detail::simple_space(shape, shape);
+    Handle handle = create_dataset(dataset, detail::file_type<T>(), space.get(), H5P_DEFAULT, H5P_DEFAULT);
+    const bool empty = std::find(shape.begin(), shape.end(), hsize_t(0)) != shape.end();
+    if (!empty && H5Dwrite(handle.get(), detail::memory_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) {
+        refuse(dataset, text("cannot be written: ", detail::last_error()));
+    }
+    if (!handle.close()) {
+        refuse(dataset, text("cannot be written: ", detail::last_error()));
+    }
+}
+
+template <class T>
+void File::read(const std::string& dataset, T* values, const Shape& expected) const {
+    const Handle handle = open_dataset(dataset);
+    const detail::Quiet quiet;
+    detail::check_type<T>(*this, dataset, handle);
+    if (const Shape found = detail::shape_of(handle); found != expected) {
+        refuse(dataset, text("expected ", to_text(expected), ", found ", to_text(found)));
+    }
+    if (H5Dread(handle.get(), detail::memory_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) {
+        refuse(dataset, text("cannot be read: ", detail::last_error()));
+    }
+}
+
+template <class T>
+void File::read_row(const std::string& dataset, hsize_t row, T* values) const {
+    const Handle handle = open_dataset(dataset);
+    const detail::Quiet quiet;
+    detail::check_type<T>(*this, dataset, handle);
+    Shape count = detail::shape_of(handle);
+    Shape start(count.size(), 0);
+    if (count.empty() || !(row < count[0])) {
+        refuse(dataset, text("has no row ", row));
+    }
+    start[0] = row;
+    count[0] = 1;
+    const Handle in_file(H5Dget_space(handle.get()), H5Sclose);
+    const Handle in_memory = detail::simple_space(count, count);
+    if (H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) < 0 ||
+        H5Dread(handle.get(), detail::memory_type<T>(), in_memory.get(), in_file.get(), H5P_DEFAULT, values) < 0) {
+        refuse(dataset, text("cannot be read: ", detail::last_error()));
+    }
+}
+
+inline void File::write_attribute(const std::string& object, const std::string& attribute, const std::string& value) {
+    const detail::Quiet quiet;
+    make_room(value.size());
+    const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+    H5Tset_size(type.get(), H5T_VARIABLE);
+    H5Tset_cset(type.get(), H5T_CSET_UTF8);
+    const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+    Handle handle(H5Acreate_by_name(m_file.get(), object.c_str(), attribute.c_str(), type.get(), space.get(), H5P_DEFAULT,
+                                    H5P_DEFAULT, H5P_DEFAULT),
+                  H5Aclose);
+    const char* content = value.c_str();
+    if (!handle.is_open() || H5Awrite(handle.get(), type.get(), &content) < 0 || !handle.close()) {
+        refuse(object, text("attribute ", attribute, " cannot be written: ", detail::last_error()));
+    }
+}
+
+inline std::optional<std::string> File::attribute(const std::string& object, const std::string& attribute) const {
+    const detail::Quiet quiet;
+    if (H5Aexists_by_name(m_file.get(), object.c_str(), attribute.c_str(), H5P_DEFAULT) <= 0) {
+        return std::nullopt;
+    }
+    const Handle handle(H5Aopen_by_name(m_file.get(), object.c_str(), attribute.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+                        H5Aclose);
+    const Handle type(handle.is_open() ? H5Aget_type(handle.get()) : -1, H5Tclose);
+    const Handle space(handle.is_open() ? H5Aget_space(handle.get()) : -1, H5Sclose);
+    if (!type.is_open() || H5Tget_class(type.get()) != H5T_STRING || H5Sget_simple_extent_npoints(space.get()) != 1) {
+        return std::nullopt;
+    }
+    if (H5Tis_variable_str(type.get()) > 0) {
+        char* content = nullptr;
+        if (H5Aread(handle.get(), type.get(), &content) < 0 || content == nullptr) {
+            return std::nullopt;
+        }
+        std::string value = content;
+        H5free_memory(content);
+        return value;
+    }
+    std::string value(H5Tget_size(type.get()), '\0');
+    if (H5Aread(handle.get(), type.get(), value.data()) < 0) {
+        return std::nullopt;
+    }
+    return std::string(value.c_str());
+}
+
+inline void File::close() {
+    const detail::Quiet quiet;
+    make_room(0);
+    haddr_t size = 0;
+    if (H5Fflush(m_file.get(), H5F_SCOPE_GLOBAL) < 0 || H5Fget_eoa(m_file.get(), &size) < 0 || !m_file.close()) {
+        throw FileError(m_name, text("cannot be written: ", detail::last_error()));
+    }
+    m_room->trim(size);
+}
+
+inline void File::refuse(const std::string& dataset, std::string_view problem) const {
+    throw FileError(m_name, text(dataset, ": ", problem));
+}
+
+inline Series::Series(const File& file, std::string dataset, Shape row)
+    : m_file(file.name()), m_room(file.m_room), m_name(std::move(dataset)), m_row(std::move(row)) {
+    const detail::Quiet quiet;
+    for (const hsize_t size : m_row) {
+        m_row_bytes *= std::max<hsize_t>(size, 1);
+    }
+    constexpr hsize_t chunk_bytes = 65536; // of small rows there are several in a chunk
+    Shape chunk{std::max<hsize_t>(1, chunk_bytes / m_row_bytes)};
+    Shape shape{0};
+    Shape maximum{H5S_UNLIMITED};
+    for (const hsize_t size : m_row) {
+        chunk.push_back(std::max<hsize_t>(size, 1));
+        shape.push_back(size);
+        maximum.push_back(size);
+    }
+    const Handle space = detail::simple_space(shape, maximum);
+    const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    H5Pset_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data());
+    const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
+    H5Pset_chunk_cache(access.get(), 1, chunk_bytes, H5D_CHUNK_CACHE_W0_DEFAULT); // see Room::make
+    file.make_room(0);
+    m_dataset = file.create_dataset(m_name, H5T_IEEE_F64LE, space.get(), properties.get(), access.get());
+}
+
+template <class T>
+void Series::append(const T* values) {
+    const detail::Quiet quiet;
+    m_room->make(m_dataset.get(), m_row_bytes);
+    Shape shape{m_rows + 1};
+    Shape start{m_rows};
+    Shape count{1};
+    for (const hsize_t size : m_row) {
+        shape.push_back(size);
+        start.push_back(0);
+        count.push_back(size);
+    }
+    bool written = H5Dset_extent(m_dataset.get(), shape.data()) >= 0;
+    if (written) {
+        const Handle in_file(H5Dget_space(m_dataset.get()), H5Sclose);
+        const Handle in_memory = detail::simple_space(count, count);
+        written = H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) >= 0 &&
+                  H5Dwrite(m_dataset.get(), detail::memory_type<T>(), in_memory.get(), in_file.get(), H5P_DEFAULT,
+                           values) >= 0;
+    }
+    if (!written) {
+        throw FileError(m_file, text(m_name, ": cannot be written: ", detail::last_error()));
+    }
+    ++m_rows;
+}
+
+inline void Series::close() {
+    const detail::Quiet quiet;
+    m_room->make(m_dataset.get(), m_row_bytes);
+    if (!m_dataset.close()) {
+        throw FileError(m_file, text(m_name, ": cannot be written: ", detail::last_error()));
+    }
+}
+
+} // namespace springfit::io::hdf5

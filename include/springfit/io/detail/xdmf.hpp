@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <springfit/io/cell_kind.hpp>
+#include <springfit/io/detail/json.hpp>
+
+namespace springfit::io::detail {
+
+inline constexpr std::array<std::pair<char, std::string_view>, 5> xml_entities{
+    {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&apos;"}}};
+
+[[nodiscard]] inline std::string xml_escaped(std::string_view plain) {
+    std::string result;
+    for (const char c : plain) {
+        const auto* entity = std::find_if(xml_entities.begin(), xml_entities.end(), [c](const auto& e) { return e.first == c; });
+        entity == xml_entities.end() ? result += c : result += entity->second;
+    }
+    return result;
+}
+
+[[nodiscard]] inline std::string xml_unescaped(std::string_view escaped) {
+    std::string result;
+    while (!escaped.empty()) {
+        const auto* entity = std::find_if(xml_entities.begin(), xml_entities.end(),
+                                          [&](const auto& e) { return escaped.starts_with(e.second); });
+        result += entity == xml_entities.end() ? escaped.front() : entity->first;
+        escaped.remove_prefix(entity == xml_entities.end() ? 1 : entity->second.size());
+    }
+    return result;
+}
+
+/// XDMF's name of a linear cell.
+[[nodiscard]] inline std::string_view xdmf_topology(CellKind kind) {
+    switch (kind) {
+    case CellKind::triangle: return "Triangle";
+    case CellKind::quadrilateral: return "Quadrilateral";
+    case CellKind::tetrahedron: return "Tetrahedron";
+    case CellKind::hexahedron: return "Hexahedron";
+    default: break;
+    }
+    throw InvalidArgument("cells", "a linear kind of cell", name(kind));
+}
+
+/// What the XDMF file of a motion tells about its HDF5 file.
+struct XdmfMotion {
+    std::string h5_name;  ///< relative to the XDMF file
+    int dimension;
+    Index n_nodes;
+    std::optional<CellKind> kind;
+    Index n_cells;
+    Index n_springs;
+    std::vector<double> times;
+    std::vector<std::string> vectors; ///< datasets [T x n x Dim], "/reference/displacement"
+};
+
+/// Two animations over the same nodes at rest, the mesh and the springs, with one set of vectors per frame.
+[[nodiscard]] inline std::string xdmf_text(const XdmfMotion& motion) {
+    const std::string h5 = xml_escaped(motion.h5_name);
+    const auto item = [&](std::string_view dataset, const std::string& dimensions, std::string_view number) {
+        return text("<DataItem Format=\"HDF\" ", number, " Dimensions=\"", dimensions, "\">", h5, ":", dataset, "</DataItem>");
+    };
+    constexpr std::string_view float64 = "NumberType=\"Float\" Precision=\"8\"";
+    constexpr std::string_view int32 = "NumberType=\"Int\" Precision=\"4\"";
+    const std::string vectors = text(motion.n_nodes, ' ', motion.dimension);
+    const std::string geometry = text("<Geometry GeometryType=\"", motion.dimension == 2 ? "XY" : "XYZ", "\">",
+                                      item("/mesh/points", vectors, float64), "</Geometry>\n");
+
+    std::string result = "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n";
+    const auto append_grid = [&](std::string_view name, const std::string& topology) {
+        result += text("<Grid Name=\"", name, "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
+        for (std::size_t t = 0; t < motion.times.size(); ++t) {
+            result += text("<Grid Name=\"", name, "\" GridType=\"Uniform\">\n<Time Value=\"", Json(motion.times[t]).dump(),
+                           "\"/>\n", topology, geometry);
+            for (const std::string& dataset : motion.vectors) {
+                std::string attribute = dataset.substr(1);
+                std::replace(attribute.begin(), attribute.end(), '/', '_');
+                result += text("<Attribute Name=\"", attribute, "\" AttributeType=\"Vector\" Center=\"Node\">",
+                               "<DataItem ItemType=\"HyperSlab\" Type=\"HyperSlab\" Dimensions=\"", vectors, "\">",
+                               "<DataItem Format=\"XML\" NumberType=\"Int\" Dimensions=\"3 3\">", t, " 0 0 1 1 1 1 ",
+                               vectors, "</DataItem>", item(dataset, text(motion.times.size(), ' ', vectors), float64),
+                               "</DataItem></Attribute>\n");
+            }
+            result += "</Grid>\n";
+        }
+        result += "</Grid>\n";
+    };
+    if (motion.kind) {
+        append_grid("mesh", text("<Topology TopologyType=\"", xdmf_topology(*motion.kind), "\" NumberOfElements=\"",
+                                 motion.n_cells, "\">",
+                                 item("/mesh/cells", text(motion.n_cells, ' ', n_corners(*motion.kind)), int32),
+                                 "</Topology>\n"));
+    }
+    if (motion.n_springs > 0) {
+        append_grid("springs", text("<Topology TopologyType=\"Polyline\" NodesPerElement=\"2\" NumberOfElements=\"",
+                                    motion.n_springs, "\">", item("/springs", text(motion.n_springs, " 2"), int32),
+                                    "</Topology>\n"));
+    }
+    return result + "</Domain>\n</Xdmf>\n";
+}
+
+/// Where an XDMF file of any program points: to which HDF5 file, and what kind of cells it names, if one that is known.
+struct XdmfTarget {
+    std::filesystem::path h5;
+    std::optional<CellKind> kind;
+};
+
+[[nodiscard]] inline XdmfTarget follow_xdmf(const std::filesystem::path& path, const std::string& content) {
+    std::set<std::string> files;
+    std::set<std::string> reference_files;
+    // Every text between two tags of the form `file.h5:/dataset`.
+    for (std::size_t end = 0; (end = content.find('<', end)) != std::string::npos; ++end) {
+        const auto begin = content.rfind('>', end);
+        if (end == 0 || begin == std::string::npos) {
+            continue;
+        }
+        std::string_view item(content.data() + begin + 1, end - begin - 1);
+        const auto colon = item.find(":/");
+        const auto first = item.find_first_not_of(" \t\r\n");
+        if (colon == std::string_view::npos || colon == first) {
+            continue;
+        }
+        const std::string file = xml_unescaped(item.substr(first, colon - first));
+        files.insert(file);
+        if (item.substr(colon + 1).starts_with("/reference/")) {
+            reference_files.insert(file);
+        }
+    }
+    const auto& candidates = reference_files.empty() ? files : reference_files;
+    if (candidates.size() != 1) {
+        std::string names;
+        for (const std::string& candidate : candidates) {
+            names += (names.empty() ? ": " : ", ") + candidate;
+        }
+        throw FileError(path.string(), candidates.empty() ? "points to no HDF5 file"
+                                                          : text("points to ", candidates.size(), " HDF5 files", names));
+    }
+    XdmfTarget target{path.parent_path() / *candidates.begin(), std::nullopt};
+    for (const CellKind kind : cell_kinds) {
+        if (n_corners(kind) == n_nodes(kind) && content.find(text("Type=\"", xdmf_topology(kind), '"')) != std::string::npos) {
+            target.kind = kind;
+        }
+    }
+    return target;
+}
+
+} // namespace springfit::io::detail

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <hdf5.h>
+
+#include <springfit/io/atomic_file.hpp>
+
+/// A thin layer over HDF5's C interface: files and arrays of doubles, floats and ints that are closed on every way out.
+/// Every error is a FileError that names file and dataset; HDF5 itself prints nothing.
+namespace springfit::io::hdf5 {
+
+/// Numbers of entries along the axes, slowest first.
+using Shape = std::vector<hsize_t>;
+
+/// `[200 x 12 x 3]`
+[[nodiscard]] std::string to_text(const Shape& shape);
+
+/// Any HDF5 object, with the function that closes it.
+class Handle {
+public:
+    using Close = herr_t (*)(hid_t);
+    Handle() = default;
+    Handle(hid_t id, Close closer) : m_id(id), m_close(closer) {}
+    Handle(Handle&& other) noexcept : m_id(std::exchange(other.m_id, -1)), m_close(other.m_close) {}
+    Handle& operator=(Handle&& other) noexcept {
+        std::swap(m_id, other.m_id);
+        std::swap(m_close, other.m_close);
+        return *this;
+    }
+    ~Handle() { (void)close(); }
+
+    [[nodiscard]] bool is_open() const noexcept { return m_id >= 0; }
+    [[nodiscard]] hid_t get() const noexcept { return m_id; }
+    /// False where closing failed, as when what was still in memory could not be written.
+    [[nodiscard]] bool close() noexcept;
+
+private:
+    hid_t m_id = -1;
+    Close m_close = nullptr;
+};
+
+/// Room on the disk for a file that is being written.
+///
+/// HDF5 1.10 cannot stand a failed write: the program crashes when it ends. So room is made, or found missing, before HDF5
+/// writes; what it keeps in memory always has its place already.
+class Room {
+public:
+    Room(const std::filesystem::path& path, std::string shown);
+    /// Makes room for `bytes` more than HDF5 has given out so far in the file of `object`. Throws FileError on a full disk.
+    void make(hid_t object, hsize_t bytes);
+    /// Gives back what was not used of a file that HDF5 has closed.
+    void trim(hsize_t size);
+
+private:
+    io::detail::Descriptor m_descriptor;
+    std::string m_name;
+    hsize_t m_size = 0;
+};
+
+/// An open file. Reading converts between number types; text where numbers are expected is refused.
+class File {
+public:
+    /// Truncates the file `path`; errors name `shown`, the file that it is to become.
+    [[nodiscard]] static File create(const std::filesystem::path& path, std::string shown);
+    [[nodiscard]] static File open(const std::filesystem::path& path);
+    /// True where the file exists and is of this format.
+    [[nodiscard]] static bool is_hdf5(const std::filesystem::path& path);
+
+    [[nodiscard]] const std::string& name() const noexcept { return m_name; }
+    [[nodiscard]] bool has(const std::string& dataset) const;
+    [[nodiscard]] Shape shape(const std::string& dataset) const;
+
+    /// Writes a whole array.
+    template <class T>
+    void write(const std::string& dataset, const T* values, const Shape& shape);
+
+    /// Reads a whole array, which must have this shape.
+    template <class T>
+    void read(const std::string& dataset, T* values, const Shape& expected) const;
+
+    /// Reads one entry of the slowest axis of an array, `row < shape[0]`.
+    template <class T>
+    void read_row(const std::string& dataset, hsize_t row, T* values) const;
+
+    void write_attribute(const std::string& object, const std::string& attribute, const std::string& value);
+    /// A text attribute, where there is one.
+    [[nodiscard]] std::optional<std::string> attribute(const std::string& object, const std::string& attribute) const;
+
+    /// Completes a created file, after all series in it were closed. Throws where that fails.
+    void close();
+
+    [[noreturn]] void refuse(const std::string& dataset, std::string_view problem) const;
+
+private:
+    friend class Series;
+    File(Handle file, std::shared_ptr<Room> room, std::string name)
+        : m_file(std::move(file)), m_room(std::move(room)), m_name(std::move(name)) {}
+    void make_room(hsize_t bytes) const { m_room->make(m_file.get(), bytes); }
+    [[nodiscard]] Handle open_dataset(const std::string& dataset) const;
+    [[nodiscard]] Handle create_dataset(const std::string& dataset, hid_t type, hid_t space, hid_t properties,
+                                        hid_t access) const;
+
+    Handle m_file;
+    std::shared_ptr<Room> m_room; ///< of a created file
+    std::string m_name;
+};
+
+/// A float64 array that grows along its slowest axis, row by row, while a motion is under way.
+class Series {
+public:
+    /// `row` is the shape of one row; empty for one number.
+    Series(const File& file, std::string dataset, Shape row);
+
+    template <class T>
+    void append(const T* values);
+    void close();
+    [[nodiscard]] const std::string& dataset() const noexcept { return m_name; }
+
+private:
+    std::string m_file;
+    std::shared_ptr<Room> m_room;
+    hsize_t m_row_bytes = sizeof(double);
+    std::string m_name;
+    Shape m_row;
+    hsize_t m_rows = 0;
+    Handle m_dataset;
+};
+
+} // namespace springfit::io::hdf5
+
+#include <springfit/io/detail/hdf5.hpp>
