@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <boost/geometry/algorithms/within.hpp>
+
+#include <springfit/cgal/triangulate.hpp>
+
+namespace springfit::cgal {
+
+namespace detail {
+
+inline PlaneGraph plane_graph(const Outline& outline) {
+    PlaneGraph graph;
+    for (Index i = 0; i < outline.points.cols(); ++i) {
+        graph.points.emplace_back(outline.points(0, i), outline.points(1, i));
+    }
+    for (Index s = 0; s < outline.segments.cols(); ++s) {
+        graph.segments.push_back({outline.segments(0, s), outline.segments(1, s)});
+    }
+    return graph;
+}
+
+inline void check(const TriangulateOptions& options) {
+    const bool by_size = options.cell_size != 0;
+    require(by_size != (options.n_nodes != 0), "cell_size, n_nodes", "one of the two", by_size ? "both" : "neither");
+    require(!by_size || (options.cell_size > 0 && std::isfinite(options.cell_size)), "cell_size", "a positive length",
+            options.cell_size);
+    require(by_size || options.n_nodes >= 3, "n_nodes", "at least the 3 of one triangle", options.n_nodes);
+}
+
+template <std::floating_point Scalar>
+[[nodiscard]] Mesh<2, Scalar, Tri3> triangulate(const Outline& given, const TriangulateOptions& options,
+                                                std::string_view name) {
+    const Outline outline = checked(given, name);
+    PlaneMesher mesher(plane_graph(outline));
+    for (Index h = 0; h < outline.holes.cols(); ++h) {
+        require(mesher.empty_at({outline.holes(0, h), outline.holes(1, h)}), name, "a hole's point inside the outline",
+                text("hole ", h, " at (", outline.holes.col(h).transpose(), ")"));
+    }
+    const double area = mesher.area();
+    require(area > 0, name, "an outline around an area", "none that is not a hole");
+    double perimeter = 0;
+    for (Index s = 0; s < outline.segments.cols(); ++s) {
+        perimeter += (outline.points.col(outline.segments(1, s)) - outline.points.col(outline.segments(0, s))).norm();
+    }
+    // Nodes at edge length h: about 1.15 A / h^2 inside and half a node per h of boundary.
+    const auto nodes_at = [&](double h) { return 1.15 * area / (h * h) + 0.5 * perimeter / h; };
+    const auto mesh_at = [&](double size) { return mesher.refined(size); };
+    const auto triangulation =
+        options.cell_size > 0
+            ? mesh_at(options.cell_size)
+            : mesh_with_nodes(options.n_nodes,
+                              size_where(nodes_at, static_cast<double>(options.n_nodes), std::sqrt(area)), 2, mesh_at,
+                              [](const PlaneMesher::Triangulation& mesh) { return count_nodes(mesh); },
+                              [&](double share) { return go_on(options.progress, "mesh", 0.9 * share); });
+    (void)go_on(options.progress, "mesh", 1);
+    auto mesh = to_mesh<Scalar>(triangulation);
+    if (!options.several_pieces) {
+        const Index pieces = n_pieces(mesh);
+        require(pieces == 1, name, "an outline of one piece (several_pieces accepts more)", text(pieces, " pieces"));
+    }
+    return mesh;
+}
+
+} // namespace detail
+
+inline Outline read_outline(const std::filesystem::path& path) {
+    const std::string name = path.string();
+    const std::string extension = detail::lower_extension(path);
+    if (extension != ".poly" && extension != ".wkt") {
+        throw FileError(name, "unknown kind of outline file '" + extension + "'; .poly and .wkt are read");
+    }
+    detail::require_readable(path);
+    const detail::OutlineFile file = extension == ".poly" ? detail::read_poly(path) : detail::read_wkt(path);
+    if (file.segments.empty()) {
+        throw FileError(name, "empty outline: no segments");
+    }
+    const auto columns = [](const auto& list, auto& matrix) {
+        matrix.resize(2, static_cast<Index>(list.size()));
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            matrix.col(static_cast<Index>(i)) << list[i][0], list[i][1];
+        }
+    };
+    Outline outline;
+    columns(file.points, outline.points);
+    columns(file.segments, outline.segments);
+    columns(file.holes, outline.holes);
+    outline = checked(outline, name);
+    if (!file.areas.empty()) { // what lies in none of the areas is a hole
+        std::vector<std::array<double, 2>> holes;
+        for (const auto& point : detail::PlaneMesher(detail::plane_graph(outline)).region_points()) {
+            const detail::OutlineFile::Point p(point.x(), point.y());
+            if (std::none_of(file.areas.begin(), file.areas.end(),
+                             [&](const auto& area) { return boost::geometry::within(p, area); })) {
+                holes.push_back({point.x(), point.y()});
+            }
+        }
+        columns(holes, outline.holes);
+    }
+    return outline;
+}
+
+template <std::floating_point Scalar>
+Mesh<2, Scalar, Tri3> triangulate(const Outline& outline, const TriangulateOptions& options) {
+    detail::check(options);
+    return detail::triangulate<Scalar>(outline, options, "outline");
+}
+
+template <std::floating_point Scalar>
+Mesh<2, Scalar, Tri3> triangulate(const std::filesystem::path& path, const TriangulateOptions& options) {
+    detail::check(options);
+    return detail::triangulate<Scalar>(read_outline(path), options, path.string());
+}
+
+} // namespace springfit::cgal
