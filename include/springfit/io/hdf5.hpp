@@ -90,6 +90,10 @@ public:
     template <class T>
     void read_row(const std::string& dataset, hsize_t row, T* values) const;
 
+    /// Makes `view` show one row `[n x m]` of a dataset `[rows x n x m]` in this file, without a copy, with columns of
+    /// zeros added up to `columns`.
+    void write_view(const std::string& view, const std::string& dataset, hsize_t row, hsize_t columns);
+
     void write_attribute(const std::string& object, const std::string& attribute, const std::string& value);
     /// A text attribute, where there is one.
     [[nodiscard]] std::optional<std::string> attribute(const std::string& object, const std::string& attribute) const;

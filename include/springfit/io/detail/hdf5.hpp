@@ -257,6 +257,27 @@ void File::read_row(const std::string& dataset, hsize_t row, T* values) const {
     }
 }
 
+inline void File::write_view(const std::string& view, const std::string& dataset, hsize_t row, hsize_t columns) {
+    const detail::Quiet quiet;
+    make_room(0);
+    const Shape source_shape = shape(dataset);
+    const Shape view_shape{source_shape[1], columns};
+    const Shape start{row, 0, 0};
+    const Shape count{1, source_shape[1], source_shape[2]};
+    const Handle source = detail::simple_space(source_shape, source_shape);
+    const Handle space = detail::simple_space(view_shape, view_shape);
+    const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    H5Sselect_hyperslab(source.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
+    H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data() + 1, nullptr, count.data() + 1, nullptr);
+    if (H5Pset_virtual(properties.get(), space.get(), ".", dataset.c_str(), source.get()) < 0) {
+        refuse(view, text("cannot be written: ", detail::last_error()));
+    }
+    const Handle whole = detail::simple_space(view_shape, view_shape);
+    if (!create_dataset(view, H5T_IEEE_F64LE, whole.get(), properties.get(), H5P_DEFAULT).close()) {
+        refuse(view, text("cannot be written: ", detail::last_error()));
+    }
+}
+
 inline void File::write_attribute(const std::string& object, const std::string& attribute, const std::string& value) {
     const detail::Quiet quiet;
     make_room(value.size());

@@ -128,6 +128,11 @@ void MotionWriter<Dim, Scalar>::finish() {
         }
         column.close();
     }
+    for (const std::string& dataset : xdmf.vectors) {
+        for (std::size_t t = 0; t < m_times.size(); ++t) {
+            m_file.write_view(detail::frame_view(dataset, t), dataset, t, 3);
+        }
+    }
     m_file.close();
     auto path = m_h5;
     m_outputs.write(path.replace_extension(".xdmf"), detail::xdmf_text(xdmf));

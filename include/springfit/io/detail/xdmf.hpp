@@ -49,6 +49,19 @@ inline constexpr std::array<std::pair<char, std::string_view>, 5> xml_entities{
     throw InvalidArgument("cells", "a linear kind of cell", name(kind));
 }
 
+/// `/reference/displacement` as it is called in ParaView: `reference_displacement`.
+[[nodiscard]] inline std::string attribute_name(const std::string& dataset) {
+    std::string result = dataset.substr(1);
+    std::replace(result.begin(), result.end(), '/', '_');
+    return result;
+}
+
+/// Where one frame of a dataset can be seen by itself, with three components: not every reader of XDMF takes a slice of
+/// an array, or vectors of two components.
+[[nodiscard]] inline std::string frame_view(const std::string& dataset, std::size_t frame) {
+    return text("/frames/", frame, '/', attribute_name(dataset));
+}
+
 /// What the XDMF file of a motion tells about its HDF5 file.
 struct XdmfMotion {
     std::string h5_name;  ///< relative to the XDMF file
@@ -69,9 +82,9 @@ struct XdmfMotion {
     };
     constexpr std::string_view float64 = "NumberType=\"Float\" Precision=\"8\"";
     constexpr std::string_view int32 = "NumberType=\"Int\" Precision=\"4\"";
-    const std::string vectors = text(motion.n_nodes, ' ', motion.dimension);
+    const std::string points = text(motion.n_nodes, ' ', motion.dimension);
     const std::string geometry = text("<Geometry GeometryType=\"", motion.dimension == 2 ? "XY" : "XYZ", "\">",
-                                      item("/mesh/points", vectors, float64), "</Geometry>\n");
+                                      item("/mesh/points", points, float64), "</Geometry>\n");
 
     std::string result = "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n";
     const auto append_grid = [&](std::string_view name, const std::string& topology) {
@@ -80,13 +93,8 @@ struct XdmfMotion {
             result += text("<Grid Name=\"", name, "\" GridType=\"Uniform\">\n<Time Value=\"", Json(motion.times[t]).dump(),
                            "\"/>\n", topology, geometry);
             for (const std::string& dataset : motion.vectors) {
-                std::string attribute = dataset.substr(1);
-                std::replace(attribute.begin(), attribute.end(), '/', '_');
-                result += text("<Attribute Name=\"", attribute, "\" AttributeType=\"Vector\" Center=\"Node\">",
-                               "<DataItem ItemType=\"HyperSlab\" Type=\"HyperSlab\" Dimensions=\"", vectors, "\">",
-                               "<DataItem Format=\"XML\" NumberType=\"Int\" Dimensions=\"3 3\">", t, " 0 0 1 1 1 1 ",
-                               vectors, "</DataItem>", item(dataset, text(motion.times.size(), ' ', vectors), float64),
-                               "</DataItem></Attribute>\n");
+                result += text("<Attribute Name=\"", attribute_name(dataset), "\" AttributeType=\"Vector\" Center=\"Node\">",
+                               item(frame_view(dataset, t), text(motion.n_nodes, " 3"), float64), "</Attribute>\n");
             }
             result += "</Grid>\n";
         }
