@@ -5,6 +5,9 @@
 /// (`parallel/`) are included one by one.
 
 #include <springfit/core/version.hpp>
+#include <springfit/fem/dynamics.hpp>
+#include <springfit/fem/loads.hpp>
+#include <springfit/fem/statics.hpp>
 #include <springfit/mesh/structured.hpp>
 #include <springfit/motion/record.hpp>
 #include <springfit/motion/user_reference.hpp>

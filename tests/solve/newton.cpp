@@ -3,6 +3,8 @@
 
 #include <random>
 
+#include <Eigen/Cholesky>
+
 #include <springfit/solve/clique_matrix.hpp>
 #include <springfit/solve/newton.hpp>
 
@@ -119,4 +121,67 @@ TEST_CASE("an old factorisation serves as preconditioner until it no longer pays
     CHECK(solver.solve(far, b, x, 1e-10));
     CHECK(solver.n_factorisations() == 2);
     CHECK((far.selfadjointView<Eigen::Lower>() * x - b).norm() <= 1e-9 * b.norm());
+}
+
+TEST_CASE("rank-one terms: product, diagonal, assembled matrix, factorisation and both preconditioners agree") {
+    const Index n = 120;
+    const Index terms = 30;
+    SparseMatrix<double> lower(n, n);
+    for (Index i = 0; i < n; ++i) {
+        lower.insert(i, i) = 2.2;
+        if (i + 1 < n) {
+            lower.insert(i + 1, i) = -1;
+        }
+    }
+    lower.makeCompressed();
+    SparseMatrix<double> columns(n, terms);
+    Values<double> weights(terms);
+    for (Index p = 0; p < terms; ++p) {
+        for (Index i = 0; i < 6; ++i) {
+            columns.insert((7 * p + 5 * i) % n, p) = std::sin(1. + static_cast<double>(p * i));
+        }
+        weights(p) = p == 3 ? 0. : (p == 7 ? -0.01 : 50. + static_cast<double>(p));
+    }
+    columns.makeCompressed();
+    const SymmetricMatrix<double> matrix(lower, columns, weights);
+    const auto full = [](const SparseMatrix<double>& triangle) {
+        const SparseMatrix<double> both = triangle.selfadjointView<Eigen::Lower>();
+        return DenseMatrix<double>(both);
+    };
+    const DenseMatrix<double> spread = columns;
+    const DenseMatrix<double> dense = full(lower) + spread * weights.asDiagonal() * spread.transpose();
+    const Values<double> b = Values<double>::LinSpaced(n, -1, 2);
+    const Values<double> exact = dense.ldlt().solve(b);
+    Values<double> product;
+    matrix.multiply(b, product);
+    CHECK((product - dense * b).norm() < 1e-13 * product.norm());
+    CHECK((matrix.diagonal() - dense.diagonal()).norm() < 1e-13 * dense.diagonal().norm());
+    CHECK((full(matrix.assembled()) - dense).norm() < 1e-13 * dense.norm());
+
+    SymmetricSolver<double> solver;
+    Values<double> x;
+    CHECK(solver.solve(matrix, b, x, 1e-12));
+    CHECK(solver.shift() == 0);
+    CHECK((x - exact).norm() < 1e-10 * exact.norm());
+    weights *= 1.2;
+    CHECK(solver.solve(matrix, b, x, 1e-10)); // the old factorisation preconditions the new matrix
+    CHECK(solver.n_factorisations() == 1);
+    matrix.multiply(x, product);
+    CHECK((product - b).norm() < 2e-10 * b.norm());
+
+    SymmetricSolver<double> diagonal;
+    diagonal.set_max_diagonal_iterations(1000);
+    CHECK(diagonal.solve(matrix, b, x, 1e-10));
+    CHECK(diagonal.n_factorisations() == 0);
+    matrix.multiply(x, product);
+    CHECK((product - b).norm() < 2e-10 * b.norm());
+    diagonal.reset();
+    diagonal.set_max_diagonal_iterations(2);
+    CHECK(diagonal.solve(matrix, b, x, 1e-10)); // too few: factorised instead
+    CHECK(diagonal.n_factorisations() == 1);
+
+    weights(7) = -1000; // not positive definite any more: the pivots tell, the shift makes the direction point downhill
+    CHECK(solver.factorise(matrix));
+    CHECK(solver.shift() > 0);
+    CHECK(solver.apply_factor(b).dot(b) > 0);
 }

@@ -59,18 +59,20 @@ private:
 };
 
 /// Moves the free nodes along with a displacement of the clamped ones, to first order: K_ff u_f = -K_fc u_c. Without
-/// it, cells at the clamps would be crushed before Newton's method starts. Leaves x as it is where that fails.
+/// it, cells at the clamps would be crushed before Newton's method starts. Where that fails or leads to positions that
+/// the material does not allow, only the clamped nodes move.
 template <class M>
-void follow_clamps(const M& model, const FreeNodes& free, PotentialEnergy<M>& potential,
-                   SymmetricSolver<typename M::Scalar>& solver, const Points<M::dimension, typename M::Scalar>& moved,
-                   Points<M::dimension, typename M::Scalar>& x) {
+[[nodiscard]] Points<M::dimension, typename M::Scalar>
+follow_clamps(const M& model, const FreeNodes& free, PotentialEnergy<M>& potential,
+              SymmetricSolver<typename M::Scalar>& solver, const Points<M::dimension, typename M::Scalar>& x,
+              const Points<M::dimension, typename M::Scalar>& moved) {
     constexpr int dim = M::dimension;
     using Scalar = typename M::Scalar;
     const Points<dim, Scalar> way = moved - x; // of the clamped nodes, 0 elsewhere
     const Scalar largest = way.cwiseAbs().maxCoeff();
     const Scalar size = (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).maxCoeff();
     if (!(largest > 0) || free.n_free() == 0) {
-        return;
+        return moved;
     }
     const Scalar h = std::cbrt(std::numeric_limits<Scalar>::epsilon()) * size / largest;
     const Points<dim, Scalar> change =
@@ -79,9 +81,13 @@ void follow_clamps(const M& model, const FreeNodes& free, PotentialEnergy<M>& po
     Values<Scalar> values = free.template gather<dim, Scalar>(x);
     Values<Scalar> follow;
     if (push.allFinite() && solver.solve(potential.hessian(values), push, follow, Scalar(1e-3))) {
-        x = moved;
-        free.template scatter<dim, Scalar>(values + follow, x);
+        Points<dim, Scalar> followed = moved;
+        free.template scatter<dim, Scalar>(values + follow, followed);
+        if (std::isfinite(model.energy(followed))) {
+            return followed;
+        }
     }
+    return moved;
 }
 
 } // namespace detail
@@ -118,13 +124,10 @@ equilibrium(const M& model, const Scenario<M::dimension, typename M::Scalar>& sc
     Scalar step = 1;
     for (int halvings = 0; report.load < 1;) {
         const Scalar load = std::min(Scalar(1), report.load + step);
-        Points<dim, Scalar> trial = x;
         potential.positions = x;
         potential.external_forces = load * full_load;
-        detail::follow_clamps<M>(model, free, potential, solver, x + (load - report.load) * clamps_way, trial);
-        if (!std::isfinite(model.energy(trial))) {
-            trial = x + (load - report.load) * clamps_way;
-        }
+        Points<dim, Scalar> trial =
+            detail::follow_clamps<M>(model, free, potential, solver, x, x + (load - report.load) * clamps_way);
         potential.positions = trial;
         Values<Scalar> values = free.template gather<dim, Scalar>(trial);
         const Scalar largest = std::max(full_load.cwiseAbs().maxCoeff(),
