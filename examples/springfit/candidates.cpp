@@ -100,8 +100,8 @@ std::vector<Candidate<Dim>> make_candidates(const Discretisation<Dim>& body, con
 template <int Dim>
 void score(std::vector<Candidate<Dim>>& candidates, const ReferenceCases<Dim>& cases) {
     Stage stage("score on motion");
-    const int parts = static_cast<int>(2 * candidates.size());
-    int part = 0;
+    const std::size_t parts = 2 * candidates.size();
+    std::size_t part = 0;
     for (auto& candidate : candidates) {
         candidate.held_out = motion_error(candidate.network, cases.held_out.scenarios, cases.held_out.motions,
                                           stage.callback(part++, parts))

@@ -70,7 +70,7 @@ std::vector<int> clamped_nodes(const std::vector<std::string>& clamps, const Poi
 
 template <int Dim>
 ReferenceCases<Dim> record_cases(const FemReference<Dim>& reference, const Discretisation<Dim>& body,
-                                 const FitOptions& options) {
+                                 const FitOptions& options, const Execution& execution) {
     const double deformation = options.deformation.value_or(0.05);
     require(deformation > 0 && deformation < 1, "--deformation", "a part of the body's size in (0, 1)", deformation);
     const double damping_ratio = options.damping_ratio.value_or(0.05);
@@ -94,7 +94,7 @@ ReferenceCases<Dim> record_cases(const FemReference<Dim>& reference, const Discr
         slowest = std::min(slowest, response.frequency);
     }
     const double period = 2 * std::numbers::pi / slowest;
-    const double duration = 1.5 * period;
+    const double duration = 1.25 * period;
     const auto amplitude = ramp_and_release(0.3 * duration, 0.6 * duration);
     std::size_t next = 0;
     for (auto* set : {&cases.training, &cases.held_out}) {
@@ -106,36 +106,41 @@ ReferenceCases<Dim> record_cases(const FemReference<Dim>& reference, const Discr
     ReferenceCases<Dim> result;
     result.stiffness_damping = 2 * damping_ratio / slowest;
     RecordOptions<double> how;
-    how.frames = options.frames.value_or(40);
+    how.frames = options.frames.value_or(32);
     require(how.frames >= 3, "--frames", "at least 3", how.frames);
     how.dt = duration / (how.frames - 1);
 
-    const int n_cases = static_cast<int>(cases.training.size() + cases.held_out.size());
-    Stage stage("record " + reference.element());
-    int done = 0;
-    const auto record_set = [&](const std::vector<Scenario<Dim, double>>& scenarios, CaseSet<Dim>& set) {
-        for (const auto& scenario : scenarios) {
-            how.progress = stage.callback(done++, n_cases);
-            auto recording = reference.record(scenario, result.stiffness_damping, how);
-            if (recording.status == Status::interrupted) {
-                result.interrupted = true;
-                return;
-            }
-            if (recording.status != Status::converged) {
-                result.warnings.push_back(text("load case ", scenario.name, ": the reference ended as ",
-                                               to_string(recording.status), " after ", recording.motion.n_frames(),
-                                               " of ", how.frames, " frames; a smaller --deformation may help"));
-            }
-            if (recording.motion.n_frames() >= 3) {
-                set.scenarios.push_back(scenario);
-                set.motions.push_back(std::move(recording.motion));
-            }
+    // Cases are independent of each other; what a Ctrl-C leaves unfinished is left out.
+    all = cases.held_out;
+    all.insert(all.end(), cases.training.begin(), cases.training.end());
+    std::vector<Recording<Dim, double>> recordings(all.size());
+    {
+        Stage stage("record " + reference.element());
+        std::vector<RecordOptions<double>> each(all.size(), how);
+        for (std::size_t c = 0; c < all.size(); ++c) {
+            each[c].progress = stage.callback(c, all.size());
         }
-    };
-    // Held-out cases first: without them no model can be judged.
-    record_set(cases.held_out, result.held_out);
-    if (!result.interrupted) {
-        record_set(cases.training, result.training);
+        execution.for_chunks(static_cast<Index>(all.size()), 1, [&](Index, Index begin, Index) {
+            const auto c = static_cast<std::size_t>(begin);
+            recordings[c] = reference.record(all[c], result.stiffness_damping, each[c]);
+        });
+    }
+    for (std::size_t c = 0; c < all.size(); ++c) {
+        auto& [motion, status] = recordings[c];
+        if (status == Status::interrupted) {
+            result.interrupted = true;
+            continue;
+        }
+        if (status != Status::converged) {
+            result.warnings.push_back(text("load case ", all[c].name, ": the reference ended as ", to_string(status),
+                                           " after ", motion.n_frames(), " of ", how.frames,
+                                           " frames; a smaller --deformation may help"));
+        }
+        if (motion.n_frames() >= 3) {
+            auto& set = c < cases.held_out.size() ? result.held_out : result.training;
+            set.scenarios.push_back(all[c]);
+            set.motions.push_back(std::move(motion));
+        }
     }
     if (result.held_out.motions.empty() || result.training.motions.empty()) {
         if (result.interrupted) {
@@ -192,8 +197,10 @@ ReferenceCases<Dim> split_recorded(std::vector<Motion<Dim, double>> motions, con
 
 template std::vector<int> clamped_nodes<2>(const std::vector<std::string>&, const Points<2, double>&);
 template std::vector<int> clamped_nodes<3>(const std::vector<std::string>&, const Points<3, double>&);
-template ReferenceCases<2> record_cases<2>(const FemReference<2>&, const Discretisation<2>&, const FitOptions&);
-template ReferenceCases<3> record_cases<3>(const FemReference<3>&, const Discretisation<3>&, const FitOptions&);
+template ReferenceCases<2> record_cases<2>(const FemReference<2>&, const Discretisation<2>&, const FitOptions&,
+                                               const Execution&);
+template ReferenceCases<3> record_cases<3>(const FemReference<3>&, const Discretisation<3>&, const FitOptions&,
+                                               const Execution&);
 template ReferenceCases<2> split_recorded<2>(std::vector<Motion<2, double>>, const Discretisation<2>&, const FitOptions&);
 template ReferenceCases<3> split_recorded<3>(std::vector<Motion<3, double>>, const Discretisation<3>&, const FitOptions&);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <springfit/core/execution.hpp>
 #include <springfit/io/report_json.hpp>
 #include <springfit/motion/motion.hpp>
 
@@ -29,7 +30,7 @@ struct ReferenceCases {
 /// Records the FEM reference under random load cases, scaled to the wanted deformation and to the body's own time.
 template <int Dim>
 [[nodiscard]] ReferenceCases<Dim> record_cases(const FemReference<Dim>& reference, const Discretisation<Dim>& body,
-                                               const FitOptions& options);
+                                               const FitOptions& options, const springfit::Execution& execution);
 
 /// Splits recorded motions: the last quarter of several, or the last third of the time of a single one, is held out.
 /// Throws InvalidArgument where a motion has another number of nodes than the body, or too few frames.

@@ -70,6 +70,11 @@ void check(const FitOptions& options) {
         refuse(options.frames.has_value(), "--frames");
         refuse(options.deformation.has_value(), "--deformation");
     }
+    if (is_motion_file(options.input)) {
+        require(!options.nodes, "--nodes", "a surface or an outline as INPUT", options.input);
+        require(!options.cell_size, "--cell-size", "a surface or an outline as INPUT", options.input);
+        require(options.fill_holes == 0, "--fill-holes", "a surface as INPUT", options.input);
+    }
 }
 
 template <int Dim>
@@ -119,7 +124,7 @@ int fit_body(const AnyMesh& mesh, std::vector<Motion<Dim, double>> recorded, std
 
     Stage recording("reference");
     const ReferenceCases<Dim> cases = recorded.empty()
-                                          ? record_cases<Dim>(*make_fem_reference<Dim>(mesh, options), body, options)
+                                          ? record_cases<Dim>(*make_fem_reference<Dim>(mesh, options), body, options, execution)
                                           : split_recorded<Dim>(std::move(recorded), body, options);
     since(recording, "reference");
     warnings.insert(warnings.end(), cases.warnings.begin(), cases.warnings.end());

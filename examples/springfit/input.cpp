@@ -32,7 +32,7 @@ constexpr int default_nodes = 1000;
 void refuse_meshing_options(const FitOptions& options) {
     require(!options.cell_size, "--cell-size", "a surface or an outline as INPUT", options.input);
     require(!options.nodes, "--nodes", "a surface or an outline as INPUT", options.input);
-    require(!options.fill_holes, "--fill-holes", "a surface as INPUT", options.input);
+    require(options.fill_holes == 0, "--fill-holes", "a surface as INPUT", options.input);
 }
 
 } // namespace
@@ -54,12 +54,12 @@ AnyMesh read_mesh(const FitOptions& options) {
         how.cell_size = options.cell_size.value_or(0);
         how.n_nodes = options.cell_size ? 0 : options.nodes.value_or(default_nodes);
         how.seed = options.seed;
-        how.repair.max_hole_edges = options.fill_holes ? cgal::small_hole_edges : 0;
+        how.repair.max_hole_edges = options.fill_holes;
         how.progress = stage.callback();
         return cgal::tetrahedralize<double>(std::filesystem::path(options.input), how);
     }
     if (is_one_of(kind, {".poly", ".wkt"})) {
-        require(!options.fill_holes, "--fill-holes", "a surface as INPUT", options.input);
+        require(options.fill_holes == 0, "--fill-holes", "a surface as INPUT", options.input);
         Stage stage("mesh");
         cgal::TriangulateOptions how;
         how.cell_size = options.cell_size.value_or(0);

@@ -52,7 +52,8 @@ void declare_fit(CLI::App& app, program::FitOptions& options) {
     add_optional(app, "--nodes", options.nodes, "number of nodes to aim at (default 1000)")
         ->excludes(cell_size)
         ->group(mesh);
-    app.add_flag("--fill-holes", options.fill_holes, "close small holes of the surface")->group(mesh);
+    app.add_option("--fill-holes", options.fill_holes, "close holes of the surface of at most this many edges (default none)")
+        ->group(mesh);
 
     const std::string cases = "Load cases";
     app.add_option("--clamp", options.clamps,
@@ -61,7 +62,7 @@ void declare_fit(CLI::App& app, program::FitOptions& options) {
         ->group(cases);
     add_optional(app, "--training-cases", options.training_cases, "load cases the fit sees (default 6)")->group(cases);
     add_optional(app, "--held-out-cases", options.held_out_cases, "load cases it never sees (default 3)")->group(cases);
-    add_optional(app, "--frames", options.frames, "frames of each recorded motion (default 40)")->group(cases);
+    add_optional(app, "--frames", options.frames, "frames of each recorded motion (default 32)")->group(cases);
     add_optional(app, "--deformation", options.deformation,
                  "displacement the loads aim at, as a part of the body's size (default 0.05)")
         ->group(cases);

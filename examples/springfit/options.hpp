@@ -24,7 +24,7 @@ struct FitOptions {
 
     std::optional<double> cell_size; ///< m
     std::optional<int> nodes;
-    bool fill_holes = false;
+    int fill_holes = 0; ///< holes of at most this many edges are closed
     std::vector<std::string> clamps;
 
     std::string method = "auto";

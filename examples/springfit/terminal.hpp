@@ -2,7 +2,9 @@
 #pragma once
 
 #include <chrono>
+#include <mutex>
 #include <string>
+#include <vector>
 
 #include <springfit/core/progress.hpp>
 
@@ -17,19 +19,20 @@ public:
     Stage(const Stage&) = delete;
     Stage& operator=(const Stage&) = delete;
 
-    /// Progress of part `part` of `parts` equal parts of this stage.
-    [[nodiscard]] springfit::ProgressCallback callback(int part = 0, int parts = 1);
+    /// Progress of part `part` of `parts` equal parts of this stage; the parts may run at the same time.
+    [[nodiscard]] springfit::ProgressCallback callback(std::size_t part = 0, std::size_t parts = 1);
 
     /// Seconds since the stage began.
     [[nodiscard]] double seconds() const;
 
 private:
-    void show(double fraction);
+    void show();
 
     std::string m_name;
     std::chrono::steady_clock::time_point m_start;
     std::chrono::steady_clock::time_point m_shown;
-    double m_fraction = 0;
+    std::mutex m_mutex;
+    std::vector<double> m_done; ///< of each part
     bool m_terminal;
 };
 
