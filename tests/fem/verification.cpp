@@ -76,7 +76,7 @@ void check_order(int coarse, double expected) {
         CAPTURE(order);
         // the mean over the cell costs quadratic cells up to one order, less in the plane
         const bool quadratic_mean = Cell::n_nodes > Cell::n_corners && dilatation == Dilatation::mean;
-        CHECK(order > (quadratic_mean ? 1.5 : expected - 0.35));
+        CHECK(order > (quadratic_mean ? 1.35 : expected - 0.35));
         CHECK(order < expected + 0.5);
     }
 }
@@ -124,8 +124,8 @@ TEST_CASE("a cantilever deflects as Timoshenko says") {
 
 TEST_CASE("a cantilever near incompressibility: the mean dilatation does not lock") {
     for (const double poisson : {0.49, 0.4999}) {
-        // as stiff as the same mesh is at 0.3, but for a tenth
-        CHECK(test::beam_tip<Tet4>(4, poisson, mean, 32) > 0.9 * test::beam_tip<Tet4>(4, 0.3, mean, 32));
+        // nearly as soft as the same mesh is at 0.3
+        CHECK(test::beam_tip<Tet4>(4, poisson, mean, 32) > 0.85 * test::beam_tip<Tet4>(4, 0.3, mean, 32));
         CHECK(test::beam_tip<Hex8>(2, poisson, mean, 16) > 0.97 * test::beam_tip<Hex8>(2, 0.3, mean, 16));
         CHECK(std::abs(test::beam_tip<Tet10>(2, poisson, mean, 16) - 1) < 0.02);
         CHECK(test::beam_tip<Tet4>(4, poisson, plain, 32) < 0.4);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <type_traits>
+
 #include <springfit/fem/model.hpp>
 #include <springfit/motion/state.hpp>
 #include <springfit/solve/newton.hpp>
