@@ -206,6 +206,26 @@ Motion<Dim, double> linear_motion(const SpringNetwork<Dim, double>& network, con
     return motion;
 }
 
+/// Smooth fields: sums of four plane waves of random direction, with up to `waves` radians per metre.
+template <int Dim>
+std::vector<Points<Dim, double>> smooth_fields(const Points<Dim, double>& nodes, int count, double amplitude,
+                                               double waves, Random& random) {
+    std::vector<Points<Dim, double>> fields;
+    for (int f = 0; f < count; ++f) {
+        Points<Dim, double> u = Points<Dim, double>::Zero(Dim, nodes.cols());
+        for (int wave = 0; wave < 4; ++wave) {
+            const Vector<Dim, double> direction = random.points<Dim, double>(1, amplitude);
+            const Vector<Dim, double> number = random.points<Dim, double>(1, waves);
+            const double phase = random(0, 6.28);
+            for (Index i = 0; i < nodes.cols(); ++i) {
+                u.col(i) += std::sin(number.dot(nodes.col(i)) + phase) * direction;
+            }
+        }
+        fields.push_back(u);
+    }
+    return fields;
+}
+
 /// A linear body let go from a smooth deformation, with the nodes at x = 0 clamped: frames of its free vibration.
 template <int Dim>
 Motion<Dim, double> vibration(const SpringNetwork<Dim, double>& network, const DenseMatrix<double>& stiffness,

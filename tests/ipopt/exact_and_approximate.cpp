@@ -23,7 +23,7 @@ const std::vector<Solver>& solvers() {
         {"sweeps from one pass", [](const FitProblem& p) { return dominant_term(p); }},
         {"sweeps from the prior",
          [](const FitProblem& p) {
-             return dominant_term(p, {.max_sweeps = 400, .tolerance = 1e-13, .start = SweepStart::given});
+             return dominant_term(p, {.max_sweeps = 3000, .tolerance = 1e-13, .start = SweepStart::given});
          }},
     };
     return all;
@@ -197,7 +197,7 @@ TEST_CASE("equilateral triangles at nu = 1/3: sqrt(3)/4 E h from each triangle a
 TEST_CASE("a square at nu = 1/3: 3/8 and 3/8 from affine motion, 17/56 and 23/56 from nodal noise") {
     const double young = 10;
     auto cell = quad_grid<double>({1, 1}, {1, 1});
-    const auto network = test::network_at_rest<2, double>(cell.nodes, join(edges(cell), diagonals(cell)));
+    const auto network = test::network_at_rest<2, double>(cell.nodes, test::join(edges(cell), diagonals(cell)));
     const auto stiffness = square_stiffness(young, 1. / 3);
     AccelerationOptions<double> options;
     options.parameters.stiffness.ties = {0, 0, 0, 0, 1, 1};
@@ -242,33 +242,35 @@ TEST_CASE_TEMPLATE("where springs cannot represent the material, fifty sweeps co
     for (const double poisson : {0.25, 0.45}) {
         const auto stiffness = test::simplex_stiffness(mesh, 1000., poisson);
         std::vector<Points<dim, double>> noise;
-        for (int frame = 0; frame < 80; ++frame) {
+        for (int frame = 0; frame < 40; ++frame) {
             noise.push_back(random.points<dim, double>(mesh.n_nodes(), 1e-4));
         }
-        for (const auto& motion : {test::linear_motion<dim>(network, stiffness, noise),
-                                   test::vibration<dim>(network, stiffness, 150, 1e-3, random)}) {
+        const auto smooth = test::smooth_fields<dim>(mesh.nodes, 40, 1e-3, 0.3, random);
+        struct Data {
+            std::string name;
+            Motion<dim, double> motion;
+        };
+        for (const auto& [name, motion] :
+             {Data{"noise", test::linear_motion<dim>(network, stiffness, noise)},
+              Data{"smooth", test::linear_motion<dim>(network, stiffness, smooth)},
+              Data{"vibration", test::vibration<dim>(network, stiffness, 100, 1e-3, random)}}) {
             CAPTURE(poisson);
-            CAPTURE(motion.clamped.size());
+            CAPTURE(name);
             const FitProblem problem = acceleration_problem<dim, double>(network, {motion});
             const FitReport exact = ipopt::exact(problem);
             CHECK(exact.status == Status::converged);
-            const FitReport pass = one_pass(problem);
-            const FitReport sweeps = dominant_term(problem, {.max_sweeps = 50});
-            double before = sweeps.objective_start;
-            for (double value : sweeps.history) {
-                CHECK(value <= before);
-                before = value;
-            }
             CHECK(exact.objective > 0);
-            CHECK(pass.objective > exact.objective);
-            CHECK(sweeps.objective >= exact.objective * (1 - 1e-9));
-            CHECK(sweeps.objective <= 1.01 * exact.objective);
-            const double zero = problem.objective.value(Values<double>::Zero(problem.n_unknowns()));
-            MESSAGE(dim, "D nu ", poisson, " clamped ", motion.clamped.size(), ": Phi/Phi(0) one pass ",
-                    pass.objective / zero, ", 1 sweep ", sweeps.history.at(0) / zero, ", 5 sweeps ",
-                    sweeps.history.at(std::min<std::size_t>(4, sweeps.history.size() - 1)) / zero, ", ",
-                    sweeps.iterations, " sweeps ", sweeps.objective / zero, ", exact ", exact.objective / zero,
-                    ", gap ", sweeps.objective / exact.objective - 1);
+            CHECK(one_pass(problem).objective > exact.objective);
+            for (const SweepStart start : {SweepStart::one_pass, SweepStart::given}) {
+                const FitReport sweeps = dominant_term(problem, {.max_sweeps = 50, .start = start});
+                double before = sweeps.objective_start;
+                for (double value : sweeps.history) {
+                    CHECK(value <= before);
+                    before = value;
+                }
+                CHECK(sweeps.objective >= exact.objective * (1 - 1e-9));
+                CHECK(sweeps.objective <= 1.01 * exact.objective);
+            }
         }
     }
 }

@@ -208,6 +208,9 @@ inline FitReport dominant_term(const FitProblem& problem, const DominantTermOpti
     detail::BlockDescent descent(problem, report.theta);
     double value = report.objective_start;
     double residual = kkt_residual(problem, report.theta);
+    double lowest = residual;
+    int idle = 0;               // sweeps since the residual was lowest
+    constexpr int patience = 5; // of them, while Phi stands still, before giving up
     const double rounding = std::numeric_limits<double>::epsilon() *
                             problem.objective.value(Values<double>::Zero(problem.n_unknowns()));
     while (true) {
@@ -220,7 +223,9 @@ inline FitReport dominant_term(const FitProblem& problem, const DominantTermOpti
         }
         const double fall = descent.sweep();
         const double next = kkt_residual(problem, descent.theta());
-        if (fall <= rounding && !(next < residual)) {
+        idle = next < lowest ? 0 : idle + 1;
+        lowest = std::min(lowest, next);
+        if (fall <= rounding && idle == patience) {
             report.status = Status::stalled;
             break;
         }

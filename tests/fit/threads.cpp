@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fit_data.hpp"
+
+#include <springfit/fit/dominant_term.hpp>
+#include <springfit/parallel/tbb.hpp>
+
+using namespace springfit;
+using test::Random;
+
+TEST_CASE_TEMPLATE("the same bits on any number of threads", T, SPRINGFIT_TEST_SPACES) {
+    constexpr int dim = T::dimension;
+    using Scalar = typename T::Scalar;
+    Random random(61);
+    const auto mesh = [] {
+        if constexpr (dim == 2) {
+            return triangle_grid<Scalar>({20, 20}, {1, 1});
+        } else {
+            return tetrahedron_grid<Scalar>({6, 6, 6}, {1, 1, 1});
+        }
+    }();
+    auto network = test::network_at_rest<dim, Scalar>(mesh.nodes, edges(mesh));
+    test::randomise(network, true, random);
+    const auto motion = test::random_motion<dim, Scalar>(network, {0, 1}, 40, random);
+    AccelerationOptions<Scalar> options;
+    options.parameters.damping.fit = true;
+    const FitProblem alone = acceleration_problem<dim, Scalar>(network, {motion}, options);
+    for (int threads : {1, 2, 4}) {
+        const Execution execution = parallel::tbb(threads);
+        const FitProblem problem = acceleration_problem<dim, Scalar>(network, {motion}, options, execution);
+        CHECK(problem.objective.linear() == alone.objective.linear());
+        CHECK(problem.objective.value(problem.prior) == alone.objective.value(alone.prior));
+        CHECK(one_pass(problem, {.execution = execution}).theta == one_pass(alone).theta);
+        CHECK(dominant_term(problem, {.max_sweeps = 3, .tolerance = 0, .execution = execution}).theta ==
+              dominant_term(alone, {.max_sweeps = 3, .tolerance = 0}).theta);
+    }
+}
