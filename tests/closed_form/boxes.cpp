@@ -68,7 +68,8 @@ TEST_CASE_TEMPLATE("braced cubes have the energy of the solid in every uniform s
         for (int trial = 0; trial < 5; ++trial) {
             const Eigen::Matrix<Scalar, 3, 3> strain = random_strain<3, Scalar>();
             const Scalar expected = volume * elastic_density<3, Scalar>(strain, 40, 40);
-            CHECK(test::relative(spring_energy<3, Scalar>(network, strain), expected, expected) < test::rounding<Scalar>());
+            CHECK(test::relative(spring_energy<3, Scalar>(network, strain), expected, expected) <
+                  test::rounding<Scalar>());
         }
         network.stiffness = cubic_cell(mesh, network.springs, {.young = 100, .poisson = 0.4}).stiffness;
         Eigen::Matrix<Scalar, 3, 3> shear = random_strain<3, Scalar>();
@@ -124,7 +125,8 @@ TEST_CASE_TEMPLATE("Baudet's rectangles are exact at nu = 1/3, and in shear at a
                 strain.diagonal().setZero();
             }
             const Scalar expected = volume * elastic_density<2, Scalar>(strain, lambda, mu);
-            CHECK(test::relative(spring_energy<2, Scalar>(network, strain), expected, expected) < test::rounding<Scalar>());
+            CHECK(test::relative(spring_energy<2, Scalar>(network, strain), expected, expected) <
+                  test::rounding<Scalar>());
         }
     }
     // The square at nu = 1/3: 3/8 E h for edges (of one cell) and diagonals.
@@ -141,7 +143,8 @@ TEST_CASE("cells that are no boxes, missing braces and long cells") {
     auto quads = quad_grid<double>({2, 2}, {1., 1.});
     const auto network = springs_along_edges(quads, {.diagonals = true});
     CHECK_THROWS_WITH_AS((void)baudet(quads, edges(quads), solid),
-                         "springs: expected a spring on every edge of the mesh, found none from 0 to 4", InvalidArgument);
+                         "springs: expected a spring on every edge of the mesh, found none from 0 to 4",
+                         InvalidArgument);
     quads.nodes(0, 4) += 0.1;
     CHECK_THROWS_AS((void)baudet(quads, network.springs, solid), InvalidArgument);
     const auto long_cells = quad_grid<double>({1, 2}, {8., 1.});

@@ -56,9 +56,15 @@ Values<double> along_edges(const SpringNetwork<Dim, double>& network, const Dens
 constexpr double young = 2e5;
 constexpr double h = 0.01;
 
-double plane_lambda(double nu) { return young * nu / (1 - nu * nu); }
-double solid_lambda(double nu) { return young * nu / ((1 + nu) * (1 - 2 * nu)); }
-double shear(double nu) { return young / (2 * (1 + nu)); }
+double plane_lambda(double nu) {
+    return young * nu / (1 - nu * nu);
+}
+double solid_lambda(double nu) {
+    return young * nu / ((1 + nu) * (1 - 2 * nu));
+}
+double shear(double nu) {
+    return young / (2 * (1 + nu));
+}
 
 } // namespace
 
@@ -112,7 +118,8 @@ TEST_CASE("the projection is the finite element stiffness along each edge, at an
     }
 }
 
-TEST_CASE_TEMPLATE("Van Gelder's formulas by hand on a right triangle and a corner tetrahedron", Scalar, float, double) {
+TEST_CASE_TEMPLATE("Van Gelder's formulas by hand on a right triangle and a corner tetrahedron", Scalar, float,
+                   double) {
     Mesh<2, Scalar, Tri3> triangle;
     triangle.nodes.resize(2, 3);
     triangle.nodes << 0, 2, 0, 0, 0, 1;
@@ -120,7 +127,9 @@ TEST_CASE_TEMPLATE("Van Gelder's formulas by hand on a right triangle and a corn
     triangle.cells << 0, 1, 2;
     const IsotropicSolid solid{.young = 10, .poisson = 0.2, .thickness = 0.5};
     const auto network = springs_along_edges(triangle); // edges 0-1, 0-2, 1-2
-    const auto close = [](Scalar a, double b) { return test::relative(a, Scalar(b), Scalar(b)) < test::rounding<Scalar>(); };
+    const auto close = [](Scalar a, double b) {
+        return test::relative(a, Scalar(b), Scalar(b)) < test::rounding<Scalar>();
+    };
     const auto simple = van_gelder(triangle, network.springs, solid);
     CHECK(close(simple.stiffness(0), 10 * 0.5 / 4));
     CHECK(close(simple.stiffness(1), 10 * 0.5 / 1));
@@ -195,7 +204,8 @@ TEST_CASE("springs of no cell are counted, edges without a spring and impossible
     CHECK(form.stiffness.head(network.n_springs() - form.n_without_cell).minCoeff() > 0);
     const NodePairs fewer = network.springs.rightCols(network.n_springs() - 1);
     CHECK_THROWS_WITH_AS((void)van_gelder(mesh, fewer, solid),
-                         "springs: expected a spring on every edge of the mesh, found none from 0 to 1", InvalidArgument);
+                         "springs: expected a spring on every edge of the mesh, found none from 0 to 1",
+                         InvalidArgument);
     const auto refused = [&](const IsotropicSolid& material) {
         CHECK_THROWS_AS((void)projection(mesh, network.springs, material), InvalidArgument);
     };
@@ -204,8 +214,9 @@ TEST_CASE("springs of no cell are counted, edges without a spring and impossible
     refused({.young = 1, .poisson = -1});
     refused({.young = std::nan(""), .poisson = 0.3});
     refused({.young = 1, .poisson = 0.3, .thickness = 0});
-    CHECK_THROWS_AS((void)projection(membrane(mesh), network.springs, {.young = 1, .poisson = 0.3, .plane_strain = true}),
-                    InvalidArgument);
+    CHECK_THROWS_AS(
+        (void)projection(membrane(mesh), network.springs, {.young = 1, .poisson = 0.3, .plane_strain = true}),
+        InvalidArgument);
     const auto tets = tetrahedron_grid<double>({1, 1, 1}, {1., 1., 1.});
     CHECK_THROWS_AS((void)projection(tets, edges(tets), {.young = 1, .poisson = 0.3, .plane_strain = true}),
                     InvalidArgument);

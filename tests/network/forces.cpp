@@ -75,7 +75,8 @@ Points<Dim, Scalar> spring_forces(const SpringNetwork<Dim, Scalar>& network, con
 
 } // namespace
 
-TEST_CASE_TEMPLATE("elastic forces are minus the gradient of the energy", T, test::Space<2, double>, test::Space<3, double>) {
+TEST_CASE_TEMPLATE("elastic forces are minus the gradient of the energy", T, test::Space<2, double>,
+                   test::Space<3, double>) {
     constexpr int dim = T::dimension;
     auto [network, x, v] = example<dim, double>();
     Points<dim, double> forces = Points<dim, double>::Zero(dim, network.n_nodes());
@@ -193,9 +194,8 @@ TEST_CASE_TEMPLATE("forces do not depend on the order or direction of springs, a
     millimetres.stiffness /= Scalar(1000);
     millimetres.damping /= Scalar(1000);
     millimetres.rest_length *= Scalar(1000);
-    CHECK(test::relative_difference(
-              spring_forces<dim, Scalar>(millimetres, Scalar(1000) * x, Scalar(1000) * v), forces) <
-          test::rounding<Scalar>());
+    CHECK(test::relative_difference(spring_forces<dim, Scalar>(millimetres, Scalar(1000) * x, Scalar(1000) * v),
+                                    forces) < test::rounding<Scalar>());
     Points<dim, Scalar> accelerations;
     compute_accelerations<dim, Scalar>(network, x, v, Points<dim, Scalar>::Ones(dim, network.n_nodes()), accelerations);
     for (Index i = 0; i < network.n_nodes(); ++i) {

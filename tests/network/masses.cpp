@@ -36,8 +36,8 @@ TEST_CASE_TEMPLATE("the total mass is density times volume on every kind of cell
 }
 
 TEST_CASE("corners share a cell by the integrals of their shape functions") {
-    // A trapezoid with parallel sides 2 and 1 at height 0 and 1: on [-1, 1]^2, det J = (3 - v) / 8. A bottom corner gets
-    // the integral of (1 -/+ u)/2 (1 - v)/2 (3 - v)/8: 1 over u times 10/24 over v; a top corner 8/24.
+    // A trapezoid with parallel sides 2 and 1 at height 0 and 1: on [-1, 1]^2, det J = (3 - v) / 8. A bottom corner
+    // gets the integral of (1 -/+ u)/2 (1 - v)/2 (3 - v)/8: 1 over u times 10/24 over v; a top corner 8/24.
     Mesh<2, double, Quad4> mesh;
     mesh.nodes.resize(2, 4);
     mesh.nodes << 0, 2, 1.5, 0.5, 0, 0, 1, 1;

@@ -37,9 +37,9 @@ TEST_CASE_TEMPLATE("springs along edges are valid, at rest and as many as the me
         const auto network = springs_along_edges(mesh, options);
         CHECK(network.n_springs() == expected);
         for (Index e = 0; e < network.n_springs(); ++e) {
-            const Scalar length = (network.rest_positions.col(network.springs(0, e)) -
-                                   network.rest_positions.col(network.springs(1, e)))
-                                      .norm();
+            const Scalar length =
+                (network.rest_positions.col(network.springs(0, e)) - network.rest_positions.col(network.springs(1, e)))
+                    .norm();
             CHECK(network.rest_length(e) == length);
             CHECK(network.stiffness(e) == 0);
             CHECK(network.damping(e) == 0);
@@ -89,14 +89,16 @@ TEST_CASE("springs that cannot be are refused by name") {
     CHECK(build(pairs_of({{0, 1}, {1, 2}, {1, 0}})) ==
           "springs: expected each pair of nodes once, found springs 0 and 2 both from 0 to 1");
     CHECK(build(pairs_of({{0, 1}, {2, 2}})) == "springs: expected two different ends, found spring 1 from 2 to 2");
-    CHECK(build(pairs_of({{0, 3}})) == "springs: expected a positive rest length, found spring 0 from 0 to 3 of length 0");
+    CHECK(build(pairs_of({{0, 3}})) ==
+          "springs: expected a positive rest length, found spring 0 from 0 to 3 of length 0");
     CHECK(build(pairs_of({{0, 4}})) == "springs: expected node numbers in [0, 4), found spring 0 from 0 to 4");
     CHECK(build(pairs_of({{-1, 2}})) == "springs: expected node numbers in [0, 4), found spring 0 from -1 to 2");
     nodes(0, 1) = std::nan("");
     CHECK(build(pairs_of({{0, 1}})) != "accepted");
     nodes(0, 1) = 1;
-    CHECK(refusal([&] { (void)springs_from_list<2, double>(nodes, pairs_of({{0, 1}}), Values<double>::Ones(3)); }) ==
-          "mass: expected 4 values, one per node, found 3");
+    CHECK(refusal([&] {
+              (void)springs_from_list<2, double>(nodes, pairs_of({{0, 1}}), Values<double>::Ones(3));
+          }) == "mass: expected 4 values, one per node, found 3");
     const auto quads = quad_grid<double>({1, 1}, {1., 1.});
     CHECK(refusal([&] { (void)springs_along_edges(quads, {.second_ring = true}); }) ==
           "second_ring: expected triangles or tetrahedra, found quadrilateral");

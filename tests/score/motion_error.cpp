@@ -162,12 +162,14 @@ TEST_CASE("progress is told, and stops the scoring") {
     CHECK(last == 1);
     CHECK(calls == 23);
     int left = 5;
-    const auto stopped = motion_error(network, set.scenarios, set.references, [&](const Progress&) { return --left > 0; });
+    const auto stopped =
+        motion_error(network, set.scenarios, set.references, [&](const Progress&) { return --left > 0; });
     CHECK(stopped.status == Status::interrupted);
     CHECK(std::isfinite(stopped.error));
     CHECK(stopped.case_statuses[2] == Status::interrupted);
     left = 3;
-    const auto cut = simulate(network, set.scenarios[0], set.references[0].times, [&](const Progress&) { return --left > 0; });
+    const auto cut =
+        simulate(network, set.scenarios[0], set.references[0].times, [&](const Progress&) { return --left > 0; });
     CHECK(cut.status == Status::interrupted);
     CHECK(cut.motion.n_frames() == 3);
 }

@@ -28,7 +28,8 @@ template <int Dim, class Scalar>
 Scenario<Dim, Scalar> driven(const SpringNetwork<Dim, Scalar>& network) {
     auto scenario = test::thrown<Dim, Scalar>(network, Scalar(0.1));
     scenario.clamps.push_back({{0, 1}, [](const Vector<Dim, Scalar>& rest, Scalar t) {
-                                   return Vector<Dim, Scalar>(rest + (1 - std::cos(t)) / 5 * Vector<Dim, Scalar>::Ones());
+                                   return Vector<Dim, Scalar>(rest +
+                                                              (1 - std::cos(t)) / 5 * Vector<Dim, Scalar>::Ones());
                                }});
     scenario.gravity.push_back({Vector<Dim, Scalar>::Unit(1) * -2, [](Scalar t) { return 1 + t; }});
     return scenario;
@@ -60,7 +61,8 @@ TEST_CASE_TEMPLATE("implicit Euler is of first order, damped, clamped and loaded
 TEST_CASE_TEMPLATE("an implicit step balances the forces at its end", T, SPRINGFIT_TEST_SPACES) {
     constexpr int dim = T::dimension;
     using Scalar = typename T::Scalar;
-    const auto network = test::random_network<dim, Scalar>(0); // without damping nothing is lagged: (v1 - v0) / h = a(x1)
+    const auto network =
+        test::random_network<dim, Scalar>(0); // without damping nothing is lagged: (v1 - v0) / h = a(x1)
     const auto scenario = driven<dim, Scalar>(network);
     ImplicitEuler<dim, Scalar> stepper(network);
     auto state = stepper.start(scenario);
@@ -68,8 +70,9 @@ TEST_CASE_TEMPLATE("an implicit step balances the forces at its end", T, SPRINGF
         const auto before = state;
         REQUIRE(stepper.advance(state, scenario, Scalar(0.05)) == Status::converged);
         const Points<dim, Scalar> rate = (state.velocities - before.velocities) / Scalar(0.05);
-        CHECK(test::relative_difference(rate.rightCols(rate.cols() - 2), state.accelerations.rightCols(rate.cols() - 2)) <
-              std::max(Scalar(1e-6), test::rounding<Scalar>(20000)));
+        CHECK(
+            test::relative_difference(rate.rightCols(rate.cols() - 2), state.accelerations.rightCols(rate.cols() - 2)) <
+            std::max(Scalar(1e-6), test::rounding<Scalar>(20000)));
     }
     CHECK(stepper.n_factorisations() <= 8);
 }
@@ -121,9 +124,8 @@ TEST_CASE("a hanging chain stretches by the weight below each spring") {
     auto network = springs_from_list<2, double>(rest, pairs, Values<double>::Constant(4, 2.));
     network.stiffness << 100, 50, 25;
     Scenario<2, double> scenario;
-    scenario.clamps.push_back({{0}, [](const Vector<2, double>& x, double t) {
-                                   return Vector<2, double>(x + Vector<2, double>(t, 0));
-                               }});
+    scenario.clamps.push_back(
+        {{0}, [](const Vector<2, double>& x, double t) { return Vector<2, double>(x + Vector<2, double>(t, 0)); }});
     scenario.gravity.push_back({{0, -10}, [](double t) { return t; }});
     const auto result = equilibrium(network, scenario, {.time = 1});
     CHECK(result.status == Status::converged);

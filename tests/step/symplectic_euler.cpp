@@ -24,8 +24,12 @@ long n_allocations = 0;
     }
     throw std::bad_alloc();
 }
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
+    std::free(memory);
+}
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
+    std::free(memory);
+}
 
 static_assert(Stepper<SymplecticEuler<2, float>>);
 static_assert(Stepper<SymplecticEuler<3, double>>);
@@ -77,7 +81,8 @@ TEST_CASE_TEMPLATE("two masses swing with the frequency and the damping ratio of
                 const double swing =
                     0.3 * std::exp(-zeta * omega * t) *
                     (std::cos(ringing * t) + zeta / std::sqrt(1 - zeta * zeta) * std::sin(ringing * t));
-                error[level] = std::max(error[level], std::abs(state.positions(0, 1) - state.positions(0, 0) - 1 - swing));
+                error[level] =
+                    std::max(error[level], std::abs(state.positions(0, 1) - state.positions(0, 0) - 1 - swing));
             }
         }
         CHECK(error[0] < 0.003);
@@ -94,7 +99,8 @@ TEST_CASE_TEMPLATE("momentum and angular momentum are kept, energy does not drif
     auto state = stepper.start(scenario);
     const auto momentum = [&](const State<dim, Scalar>& s) { return Vector<dim, Scalar>(s.velocities * network.mass); };
     const auto angular = [&](const State<dim, Scalar>& s) {
-        const Eigen::Matrix<Scalar, dim, dim> tensor = s.positions * network.mass.asDiagonal() * s.velocities.transpose();
+        const Eigen::Matrix<Scalar, dim, dim> tensor =
+            s.positions * network.mass.asDiagonal() * s.velocities.transpose();
         return Eigen::Matrix<Scalar, dim, dim>(tensor - tensor.transpose());
     };
     const Vector<dim, Scalar> momentum_0 = momentum(state);
@@ -120,7 +126,8 @@ TEST_CASE_TEMPLATE("frames are second order in the sub-step", T, test::Space<2, 
     const auto network = test::random_network<dim, double>(0);
     auto scenario = test::thrown<dim, double>(network, 0.05);
     scenario.clamps.push_back({{0, 1}, [](const Vector<dim, double>& rest, double t) {
-                                   return Vector<dim, double>(rest + 0.1 * (1 - std::cos(3 * t)) * Vector<dim, double>::Ones());
+                                   return Vector<dim, double>(rest + 0.1 * (1 - std::cos(3 * t)) *
+                                                                         Vector<dim, double>::Ones());
                                }});
     scenario.gravity.push_back({Vector<dim, double>::Constant(-3), [](double t) { return std::sin(4 * t); }});
     const double step = 16 * stable_step(network) * 0.99;
@@ -157,8 +164,8 @@ TEST_CASE_TEMPLATE("recorded accelerations are the network's own, and clamps and
     CHECK(motion.clamped == std::vector<int>{0, 2, 3});
     for (std::size_t t = 0; t < motion.times.size(); ++t) {
         Points<dim, Scalar> accelerations;
-        compute_accelerations<dim, Scalar>(network, motion.positions[t], motion.velocities[t], motion.external_forces[t],
-                                           accelerations);
+        compute_accelerations<dim, Scalar>(network, motion.positions[t], motion.velocities[t],
+                                           motion.external_forces[t], accelerations);
         for (Index i = 0; i < network.n_nodes(); ++i) {
             if (i == 2 || i == 3) {
                 CHECK(motion.positions[t].col(i) == network.rest_positions.col(i));
@@ -166,7 +173,8 @@ TEST_CASE_TEMPLATE("recorded accelerations are the network's own, and clamps and
                 CHECK(motion.accelerations[t].col(i).norm() == 0);
             } else if (i == 0) {
                 const Scalar time = motion.times[t];
-                const Vector<dim, Scalar> goal = network.rest_positions.col(0) + time * time * Vector<dim, Scalar>::Unit(1);
+                const Vector<dim, Scalar> goal =
+                    network.rest_positions.col(0) + time * time * Vector<dim, Scalar>::Unit(1);
                 CHECK((motion.positions[t].col(0) - goal).norm() <= test::rounding<Scalar>(10));
                 CHECK(std::abs(motion.velocities[t](1, 0) - 2 * time) < Scalar(0.02));
             } else {
@@ -177,7 +185,8 @@ TEST_CASE_TEMPLATE("recorded accelerations are the network's own, and clamps and
     }
 }
 
-TEST_CASE_TEMPLATE("a body without loads stays at rest, and motion does not depend on numbering", T, SPRINGFIT_TEST_SPACES) {
+TEST_CASE_TEMPLATE("a body without loads stays at rest, and motion does not depend on numbering", T,
+                   SPRINGFIT_TEST_SPACES) {
     constexpr int dim = T::dimension;
     using Scalar = typename T::Scalar;
     const auto network = test::random_network<dim, Scalar>(Scalar(0.001));

@@ -12,11 +12,11 @@ namespace springfit {
 ///     k_face,pq = (a_p^2 + a_q^2) (mu V / (4 a_p^2 a_q^2) - k_body / s) ,
 ///     k_edge,p  = 3 mu V / (4 a_p^2) - sum_q a_p^2 k_face,pq / (a_p^2 + a_q^2) - a_p^2 k_body / s ,
 ///
-/// where b, the share of the body diagonals in the shear, is 0, 1 (cubes alone) or, with both, 1/2 (our choice). It gives
-/// every uniform strain the energy of a solid with lambda = mu = E / (2 (1 + nu)): exact at nu = 1/4, and in shear at any
-/// nu. For cubes of side a, face diagonals at nu = 1/4: k_edge = a E / 10, k_face = a E / 5 (Kot et al.); body
-/// diagonals: k_edge = a E / (4 (1 + nu)), k_body = 3 a E / (8 (1 + nu)). The derivation for boxes is ours. Long boxes
-/// make k_edge negative: clamped at 0.
+/// where b, the share of the body diagonals in the shear, is 0, 1 (cubes alone) or, with both, 1/2 (our choice). It
+/// gives every uniform strain the energy of a solid with lambda = mu = E / (2 (1 + nu)): exact at nu = 1/4, and in
+/// shear at any nu. For cubes of side a, face diagonals at nu = 1/4: k_edge = a E / 10, k_face = a E / 5 (Kot et al.);
+/// body diagonals: k_edge = a E / (4 (1 + nu)), k_body = 3 a E / (8 (1 + nu)). The derivation for boxes is ours. Long
+/// boxes make k_edge negative: clamped at 0.
 ///
 /// Throws InvalidArgument for a material out of range, a cell that is no box, body diagonals alone on a box that is no
 /// cube, and springs that leave an edge, or one of the diagonals of a kind, without a spring. O(cells log springs).

@@ -12,7 +12,8 @@ namespace springfit {
 /// sums over the cells at the edge. nu does not enter. Exact for equilateral triangles with nu = 1/3 alone. In plane
 /// strain E is replaced by E / (1 - nu^2). The springs join the nodes of `corner_mesh(mesh)`.
 ///
-/// Throws InvalidArgument for a material out of range, an inverted cell, an edge without a spring. O(cells log springs).
+/// Throws InvalidArgument for a material out of range, an inverted cell, an edge without a spring. O(cells log
+/// springs).
 template <int Dim, std::floating_point Scalar, SimplexCell Cell>
 [[nodiscard]] ClosedForm<Scalar> van_gelder(const Mesh<Dim, Scalar, Cell>& mesh, const NodePairs& springs,
                                             const IsotropicSolid& solid) {
@@ -36,8 +37,7 @@ template <int Dim, std::floating_point Scalar, SimplexCell Cell>
     const Scalar e = constants.young;
     const Scalar nu = constants.poisson;
     return detail::sum_over_simplices(mesh, springs, [&](const detail::SimplexEdge<Scalar>& edge) {
-        return e / (1 + nu) * edge.volume / edge.squared_length -
-               e * nu / (1 - nu * nu) * edge.volume * edge.gradients;
+        return e / (1 + nu) * edge.volume / edge.squared_length - e * nu / (1 - nu * nu) * edge.volume * edge.gradients;
     });
 }
 

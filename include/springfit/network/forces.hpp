@@ -111,8 +111,8 @@ void add_spring_block(CliqueMatrix<Dim, Scalar>& matrix, Index spring, const Eig
 
 /// Adds the Hessian of the elastic energy at `positions`, N/m, to a `spring_matrix`. O(springs).
 template <int Dim, std::floating_point Scalar>
-void add_stiffness(const SpringNetwork<Dim, Scalar>& network, const Points<Dim, Scalar>& positions,
-                   Curvature curvature, CliqueMatrix<Dim, Scalar>& matrix) {
+void add_stiffness(const SpringNetwork<Dim, Scalar>& network, const Points<Dim, Scalar>& positions, Curvature curvature,
+                   CliqueMatrix<Dim, Scalar>& matrix) {
     using Block = Eigen::Matrix<Scalar, Dim, Dim>;
     for (Index e = 0; e < network.n_springs(); ++e) {
         const detail::SpringVector<Dim, Scalar> spring(network.springs, e, positions);
@@ -121,8 +121,7 @@ void add_stiffness(const SpringNetwork<Dim, Scalar>& network, const Points<Dim, 
         if (curvature == Curvature::positive_semidefinite) {
             geometric = std::max(geometric, Scalar(0));
         }
-        const Block b = network.stiffness(e) *
-                        (geometric * Block::Identity() + (1 - geometric) * n * n.transpose());
+        const Block b = network.stiffness(e) * (geometric * Block::Identity() + (1 - geometric) * n * n.transpose());
         detail::add_spring_block<Dim, Scalar>(matrix, e, b);
     }
 }

@@ -77,9 +77,9 @@ template <int Dim, std::floating_point Scalar>
 ///
 ///     auto network = springs_along_edges(mesh, {.diagonals = true, .density = 1000.});
 ///
-/// The nodes are the corners of the mesh: of a quadratic mesh, node n is its node `corner_nodes(mesh)[n]`. Stiffness and
-/// damping are 0 until a closed form or a fit sets them. A mesh of quadrilaterals or hexahedra without diagonals does
-/// not resist shear. Throws InvalidArgument for a mesh or an option that cannot be used. O(cells log cells).
+/// The nodes are the corners of the mesh: of a quadratic mesh, node n is its node `corner_nodes(mesh)[n]`. Stiffness
+/// and damping are 0 until a closed form or a fit sets them. A mesh of quadrilaterals or hexahedra without diagonals
+/// does not resist shear. Throws InvalidArgument for a mesh or an option that cannot be used. O(cells log cells).
 template <int Dim, std::floating_point Scalar, CellType Cell>
 [[nodiscard]] SpringNetwork<Dim, Scalar> springs_along_edges(const Mesh<Dim, Scalar, Cell>& mesh,
                                                              const SpringOptions<Scalar>& options = {}) {
@@ -111,8 +111,8 @@ public:
     explicit SpringLookup(const NodePairs& springs) {
         m_sorted.reserve(static_cast<std::size_t>(springs.cols()));
         for (Index e = 0; e < springs.cols(); ++e) {
-            m_sorted.push_back({std::min(springs(0, e), springs(1, e)), std::max(springs(0, e), springs(1, e)),
-                                static_cast<int>(e)});
+            m_sorted.push_back(
+                {std::min(springs(0, e), springs(1, e)), std::max(springs(0, e), springs(1, e)), static_cast<int>(e)});
         }
         std::sort(m_sorted.begin(), m_sorted.end());
     }

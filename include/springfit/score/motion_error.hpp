@@ -15,9 +15,9 @@ struct MotionError {
     /// sqrt( sum |x - x_ref|^2 / sum |x_ref - x_rest|^2 ) over the free nodes, frames and cases of the set: 0 is the
     /// reference itself, 1 as bad as not moving at all; infinite where a case could not be simulated to its end.
     double error = 0;
-    Status status = Status::converged;      ///< of the first case that did not end well
-    std::vector<double> case_errors;        ///< the same of each case on its own
-    std::vector<Status> case_statuses;      ///< how the simulation of each case ended
+    Status status = Status::converged; ///< of the first case that did not end well
+    std::vector<double> case_errors;   ///< the same of each case on its own
+    std::vector<Status> case_statuses; ///< how the simulation of each case ended
 };
 
 template <std::floating_point Scalar>
@@ -78,8 +78,9 @@ inline MotionError total_error(const std::vector<SquaredDistances>& sums, std::v
 
 } // namespace detail
 
-/// Error of motions against references of the same frames, `motions[c]` against `references[c]`. A motion that is cut short
-/// makes the error infinite, `diverged`. Throws InvalidArgument for other numbers of cases or nodes. O(nodes x frames).
+/// Error of motions against references of the same frames, `motions[c]` against `references[c]`. A motion that is cut
+/// short makes the error infinite, `diverged`. Throws InvalidArgument for other numbers of cases or nodes. O(nodes x
+/// frames).
 template <int Dim, std::floating_point Scalar>
 [[nodiscard]] MotionError motion_error(const std::vector<Motion<Dim, Scalar>>& motions,
                                        const std::vector<Motion<Dim, Scalar>>& references) {
@@ -110,11 +111,10 @@ template <int Dim, std::floating_point Scalar>
 /// motion that it survives. Interrupted, the error is that of the frames compared so far. Throws InvalidArgument for
 /// scenarios, references and network that do not fit together. O(springs x sub-steps), no frame is kept.
 template <int Dim, std::floating_point Scalar>
-[[nodiscard]] MotionError motion_error(const SpringNetwork<Dim, Scalar>& network,
-                                       const std::vector<Scenario<Dim, Scalar>>& scenarios,
-                                       const std::vector<Motion<Dim, Scalar>>& references,
-                                       const ProgressCallback& progress = {},
-                                       const MotionErrorOptions<Scalar>& options = {}) {
+[[nodiscard]] MotionError
+motion_error(const SpringNetwork<Dim, Scalar>& network, const std::vector<Scenario<Dim, Scalar>>& scenarios,
+             const std::vector<Motion<Dim, Scalar>>& references, const ProgressCallback& progress = {},
+             const MotionErrorOptions<Scalar>& options = {}) {
     require(scenarios.size() == references.size(), "scenarios", text(references.size(), ", one per reference"),
             scenarios.size());
     std::vector<FreeNodes> free;

@@ -53,9 +53,9 @@ Status for_frames(SymplecticEuler<Dim, Scalar>& stepper, const Scenario<Dim, Sca
 /// The motion of a network under a scenario at the frame times of another motion (increasing, s, from 0 on), by
 /// symplectic Euler with sub-steps below the stable step.
 ///
-/// Status `converged`; `diverged` with the frames before; `iteration_limit`, without frames, where the stable step is so
-/// short that a frame would take more than `options.max_substeps`; `interrupted`. Throws InvalidArgument for a scenario
-/// or times that do not fit. O(springs x sub-steps).
+/// Status `converged`; `diverged` with the frames before; `iteration_limit`, without frames, where the stable step is
+/// so short that a frame would take more than `options.max_substeps`; `interrupted`. Throws InvalidArgument for a
+/// scenario or times that do not fit. O(springs x sub-steps).
 template <int Dim, std::floating_point Scalar>
 [[nodiscard]] Recording<Dim, Scalar> simulate(const SpringNetwork<Dim, Scalar>& network,
                                               const Scenario<Dim, Scalar>& scenario, const std::vector<Scalar>& times,

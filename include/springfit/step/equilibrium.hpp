@@ -12,7 +12,7 @@ struct EquilibriumOptions {
     Points<Dim, Scalar> start{};     ///< first guess [Dim x n_nodes], m; empty: the scenario's initial positions
     Scalar tolerance = Scalar(1e-8); ///< largest unbalanced force relative to the largest load or spring force, > 0;
                                      ///< rounding of the positions is the floor
-    int max_iterations = 200;        ///< Newton iterations, >= 1
+    int max_iterations = 500;        ///< Newton iterations, >= 1
 };
 
 /// Where a network comes to rest.
@@ -23,7 +23,8 @@ struct Equilibrium {
     Scalar residual = 0;           ///< largest unbalanced force component, N
     int iterations = 0;
     /// The stiffness at `positions` is positive definite well above rounding. Where it is not, there is a mechanism (a
-    /// motion that no spring resists), a free rigid motion or an instability: the positions are one of many, or a saddle.
+    /// motion that no spring resists), a free rigid motion or an instability: the positions are one of many, or a
+    /// saddle.
     bool stable = false;
 };
 
@@ -56,7 +57,7 @@ bool is_positive_definite(SymmetricSolver<Scalar>& solver, const SparseMatrix<Sc
 } // namespace detail
 
 /// The static equilibrium of a network under a scenario at one time: the minimum of the potential energy
-/// E(x) - f_ext . x over the free nodes, by Newton's method with the exact Hessian and a line search.
+/// E(x) - f_ext . x over the free nodes, by Newton's method with a line search.
 ///
 /// Springs alone need not hold a shape: see `Equilibrium::stable`. Where the matrix is singular or indefinite, Newton's
 /// step is regularised and still goes downhill. Throws InvalidArgument for a scenario or option that does not fit.
@@ -76,7 +77,7 @@ template <int Dim, std::floating_point Scalar>
     apply_clamps<Dim, Scalar>(scenario, network.rest_positions, options.time, result.positions);
     const Points<Dim, Scalar> external = external_forces<Dim, Scalar>(scenario, network.mass, options.time);
     const FreeNodes free(network.n_nodes(), clamped_nodes(scenario, network.n_nodes()));
-    detail::SpringPotential<Dim, Scalar> potential(network, free, Curvature::exact);
+    detail::SpringPotential<Dim, Scalar> potential(network, free);
     potential.set_statics(network, result.positions, external, Scalar(1e-9));
 
     Values<Scalar> x = free.template gather<Dim, Scalar>(result.positions);
@@ -93,13 +94,16 @@ template <int Dim, std::floating_point Scalar>
     NewtonOptions<Scalar> newton;
     newton.max_iterations = options.max_iterations;
     newton.gradient_tolerance = std::max(options.tolerance * force, 4 * rounding);
+    potential.set_exact_below(Scalar(1e-2) * force);
     const auto report = minimise(potential, x, solver, newton);
-    const bool at_rounding = report.status == Status::stalled && report.gradient_max <= 64 * rounding;
+    const bool at_rounding = usable(report.status) && report.gradient_max <= 64 * rounding;
     result.status = at_rounding ? Status::converged : report.status;
     result.iterations = report.iterations;
     result.residual = report.gradient_max;
     free.template scatter<Dim, Scalar>(x, result.positions);
     potential.set_statics(network, result.positions, external);
+    potential.set_exact_below(std::numeric_limits<Scalar>::infinity());
+    potential.gradient(x, gradient);
     result.stable = usable(result.status) && detail::is_positive_definite<Scalar>(solver, potential.hessian(x));
     return result;
 }

@@ -19,9 +19,9 @@ struct ImplicitEulerOptions {
 ///
 ///     1/(2 h^2) |x - x_n - h v_n|_M^2 + E(x) - f_ext(t_n + h) . x + 1/(2h) sum_e c_e (n_e . (r_e - r_e^n))^2 ,
 ///
-/// n_e lagged, by Newton's method with the semidefinite Hessian and a line search. First order in h, stable at any h, and
-/// it damps what it does not resolve. The analysis and factorisation are kept from step to step while the same nodes are
-/// clamped. `state.accelerations` is the network's own at the frame's positions and velocities.
+/// n_e lagged, by Newton's method with a line search. First order in h, stable at any h, and
+/// it damps what it does not resolve. The analysis and factorisation are kept from step to step while the same nodes
+/// are clamped. `state.accelerations` is the network's own at the frame's positions and velocities.
 ///
 /// `advance` returns Newton's status where it is not `converged`, with the state as it was. Model of `Stepper`.
 template <int Dim, std::floating_point ScalarType>
@@ -51,7 +51,7 @@ public:
         require(dt > 0 && std::isfinite(dt), "dt", "a positive time step", dt);
         const std::vector<int> clamped = clamped_nodes(scenario, m_network.n_nodes());
         if (!m_potential || clamped != m_clamped) {
-            m_potential.emplace(m_network, FreeNodes(m_network.n_nodes(), clamped), Curvature::positive_semidefinite);
+            m_potential.emplace(m_network, FreeNodes(m_network.n_nodes(), clamped));
             m_clamped = clamped;
             m_solver.reset();
         }
@@ -71,14 +71,15 @@ public:
             m_potential->gradient(x, gradient);
             Points<Dim, Scalar> elastic = Points<Dim, Scalar>::Zero(Dim, m_network.n_nodes());
             add_elastic_forces<Dim, Scalar>(m_network, state.positions, elastic);
-            const Scalar force = std::max({gradient.template lpNorm<Eigen::Infinity>(),
-                                           elastic.cwiseAbs().maxCoeff(), external.cwiseAbs().maxCoeff()});
+            const Scalar force = std::max({gradient.template lpNorm<Eigen::Infinity>(), elastic.cwiseAbs().maxCoeff(),
+                                           external.cwiseAbs().maxCoeff()});
             const Scalar rounding = m_potential->gradient_rounding(next.positions);
             NewtonOptions<Scalar> newton;
             newton.max_iterations = m_options.max_iterations;
             newton.gradient_tolerance = std::max(m_options.tolerance * force, 4 * rounding);
+            m_potential->set_exact_below(Scalar(1e-2) * force);
             const auto report = minimise(*m_potential, x, m_solver, newton);
-            const bool at_rounding = report.status == Status::stalled && report.gradient_max <= 64 * rounding;
+            const bool at_rounding = usable(report.status) && report.gradient_max <= 64 * rounding;
             if (report.status != Status::converged && !at_rounding) {
                 return report.status;
             }

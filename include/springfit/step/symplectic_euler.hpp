@@ -11,7 +11,8 @@ namespace springfit {
 /// One explicit step of a network, in place: v += h a(x, v), then x += h v. This is the step of real-time use.
 ///
 /// `inverse_masses` `[n_nodes]` holds 1 / m_i, and 0 at clamped nodes: those keep their velocity. `external_forces` and
-/// the scratch array `forces` are `[Dim x n_nodes]`. Stable for h below `stable_step(network)`. O(springs), no allocation.
+/// the scratch array `forces` are `[Dim x n_nodes]`. Stable for h below `stable_step(network)`. O(springs), no
+/// allocation.
 template <int Dim, std::floating_point Scalar>
 void symplectic_euler_step(const SpringNetwork<Dim, Scalar>& network, const Values<Scalar>& inverse_masses,
                            const Points<Dim, Scalar>& external_forces, Scalar h, Points<Dim, Scalar>& positions,
@@ -34,10 +35,10 @@ struct SymplecticEulerOptions {
 ///
 /// Velocities run half a sub-step ahead of positions within a call and are brought back to the same time at its end
 /// (the leap-frog form), so positions and velocities of a frame are second order in the sub-step where there is no
-/// damping, momentum is kept to rounding, and energy does not drift. Damping acts at the velocity half a sub-step earlier.
-/// `state.accelerations` is the network's own at the frame's positions and velocities; at clamped nodes it is the
-/// change of their velocity over the call. Clamped nodes go where the scenario says at every sub-step, with velocity by
-/// differencing over the sub-step.
+/// damping, momentum is kept to rounding, and energy does not drift. Damping acts at the velocity half a sub-step
+/// earlier. `state.accelerations` is the network's own at the frame's positions and velocities; at clamped nodes it is
+/// the change of their velocity over the call. Clamped nodes go where the scenario says at every sub-step, with
+/// velocity by differencing over the sub-step.
 ///
 /// A state that is not finite is undone: `diverged`. Model of `Stepper`.
 template <int Dim, std::floating_point ScalarType>

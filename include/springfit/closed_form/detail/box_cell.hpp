@@ -11,7 +11,8 @@ template <int Dim, std::floating_point Scalar, CellType Cell>
 Vector<Cell::dimension, Scalar> box_sides(const Mesh<Dim, Scalar, Cell>& mesh, Index cell) {
     constexpr int d = Cell::dimension;
     constexpr int neighbours[3] = {1, 3, 4};
-    constexpr int steps[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+    constexpr int steps[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
+                                 {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
     (void)corner_volumes(mesh, cell); // refuses inverted cells
     const auto x = mesh.cell_nodes(cell);
     Eigen::Matrix<Scalar, Dim, d> axes;

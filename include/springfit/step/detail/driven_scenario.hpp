@@ -28,7 +28,8 @@ public:
     [[nodiscard]] bool loads_vary() const { return m_loads_vary; }
 
     /// Gives the clamped nodes the velocity that takes them to where they must be at `time`, h from now.
-    void aim_clamps(Scalar time, Scalar h, const Points<Dim, Scalar>& positions, Points<Dim, Scalar>& velocities) const {
+    void aim_clamps(Scalar time, Scalar h, const Points<Dim, Scalar>& positions,
+                    Points<Dim, Scalar>& velocities) const {
         if (!m_clamps_move) {
             for (int node : m_clamped) {
                 velocities.col(node).setZero();

@@ -11,13 +11,16 @@ namespace springfit::detail {
 ///     w/2 |x - target|_M^2 + E(x) - f . (x - target) + d/2 sum_e c_e (n_e . (r_e(x) - r_e(old)))^2
 ///
 /// with w = 1 / h^2 and d = 1 / h, n_e taken at the old positions; w = d = 0 leaves the equilibrium.
+///
+/// Its Hessian is the semidefinite one far from the minimum, where compressed springs make the exact one indefinite and
+/// a shifted Newton step poor, and the exact one, which converges quadratically, where the gradient has become small.
 template <int Dim, std::floating_point ScalarType>
 class SpringPotential {
 public:
     using Scalar = ScalarType;
 
-    SpringPotential(const SpringNetwork<Dim, Scalar>& network, const FreeNodes& free, Curvature curvature)
-        : m_curvature(curvature), m_matrix(spring_matrix(network, free)), m_damped((network.damping.array() > 0).any()) {}
+    SpringPotential(const SpringNetwork<Dim, Scalar>& network, const FreeNodes& free)
+        : m_matrix(spring_matrix(network, free)), m_damped((network.damping.array() > 0).any()) {}
 
     [[nodiscard]] const FreeNodes& free_nodes() const { return m_matrix.free_nodes(); }
     [[nodiscard]] const CliqueMatrix<Dim, Scalar>& matrix() const { return m_matrix; }
@@ -53,6 +56,9 @@ public:
         }
     }
 
+    /// The Hessian is exact where no entry of the gradient exceeds this, N.
+    void set_exact_below(Scalar gradient) { m_exact_below = gradient; }
+
     [[nodiscard]] Scalar energy(const Values<Scalar>& x) {
         free_nodes().template scatter<Dim, Scalar>(x, m_points);
         Scalar energy = elastic_energy<Dim, Scalar>(*m_network, m_points);
@@ -81,16 +87,18 @@ public:
             m_forces.col(i) -= m_inertia * m_network->mass(i) * (m_points.col(i) - m_target.col(i));
         }
         gradient = -free_nodes().template gather<Dim, Scalar>(m_forces);
+        m_is_near = gradient.template lpNorm<Eigen::Infinity>() <= m_exact_below;
     }
 
+    /// At the point whose gradient was asked for last.
     [[nodiscard]] const SparseMatrix<Scalar>& hessian(const Values<Scalar>& x) {
         free_nodes().template scatter<Dim, Scalar>(x, m_points);
         m_matrix.set_zero();
-        add_stiffness<Dim, Scalar>(*m_network, m_points, m_curvature, m_matrix);
+        add_stiffness<Dim, Scalar>(*m_network, m_points,
+                                   m_is_near ? Curvature::exact : Curvature::positive_semidefinite, m_matrix);
         for (Index e = 0; m_damping > 0 && e < m_network->n_springs(); ++e) {
-            add_spring_block<Dim, Scalar>(m_matrix, e,
-                                          m_damping * m_network->damping(e) * m_directions.col(e) *
-                                              m_directions.col(e).transpose());
+            add_spring_block<Dim, Scalar>(
+                m_matrix, e, m_damping * m_network->damping(e) * m_directions.col(e) * m_directions.col(e).transpose());
         }
         for (Index f = 0; m_inertia > 0 && f < free_nodes().n_free(); ++f) {
             m_matrix.add_diagonal(f, m_inertia * m_network->mass(free_nodes().nodes()[static_cast<std::size_t>(f)]));
@@ -102,6 +110,21 @@ public:
             }
         }
         return m_matrix.matrix();
+    }
+
+    /// The rounding of the energy at the coordinates last used, J: its terms may cancel.
+    [[nodiscard]] Scalar energy_rounding() const {
+        Scalar terms = 0;
+        for (Index e = 0; e < m_network->n_springs(); ++e) {
+            const SpringVector<Dim, Scalar> spring(m_network->springs, e, m_points);
+            const Scalar tension = m_network->stiffness(e) * std::abs(spring.length - m_network->rest_length(e));
+            terms += tension * (spring.length + m_network->rest_length(e));
+        }
+        for (int i : free_nodes().nodes()) {
+            const Vector<Dim, Scalar> away = m_points.col(i) - m_target.col(i);
+            terms += m_inertia * m_network->mass(i) * away.squaredNorm() + std::abs(m_external->col(i).dot(away));
+        }
+        return 4 * std::numeric_limits<Scalar>::epsilon() * terms;
     }
 
     /// The gradient that rounding of the coordinates alone makes, N.
@@ -117,11 +140,9 @@ public:
 
 private:
     [[nodiscard]] Scalar gap(Index e) const {
-        return m_directions.col(e).dot(m_points.col(m_network->springs(1, e)) -
-                                       m_points.col(m_network->springs(0, e)));
+        return m_directions.col(e).dot(m_points.col(m_network->springs(1, e)) - m_points.col(m_network->springs(0, e)));
     }
 
-    Curvature m_curvature;
     CliqueMatrix<Dim, Scalar> m_matrix;
     bool m_damped;
     const SpringNetwork<Dim, Scalar>* m_network = nullptr;
@@ -129,6 +150,8 @@ private:
     Scalar m_inertia = 0;
     Scalar m_damping = 0;
     Scalar m_floor = 0;
+    Scalar m_exact_below = 0;
+    bool m_is_near = false;
     Points<Dim, Scalar> m_points; ///< all nodes; the free ones at the x last asked for
     Points<Dim, Scalar> m_target;
     Points<Dim, Scalar> m_forces;
