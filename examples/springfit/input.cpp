@@ -6,6 +6,7 @@
 #include <springfit/cgal/tetrahedralize.hpp>
 #include <springfit/cgal/triangulate.hpp>
 #include <springfit/io/mesh_file.hpp>
+#include <springfit/mesh/corner_mesh.hpp>
 
 #include "body.hpp"
 #include "terminal.hpp"
@@ -33,6 +34,27 @@ void refuse_meshing_options(const FitOptions& options) {
     require(!options.cell_size, "--cell-size", "a surface or an outline as INPUT", options.input);
     require(!options.nodes, "--nodes", "a surface or an outline as INPUT", options.input);
     require(options.fill_holes == 0, "--fill-holes", "a surface as INPUT", options.input);
+}
+
+/// The mesh of a file, corners only; plane where it is flat.
+[[nodiscard]] AnyMesh from_mesh_file(const io::MeshFile& file) {
+    for (const std::string& note : file.notes) {
+        std::fprintf(stderr, "%s: %s\n", file.file.c_str(), note.c_str());
+    }
+    return io::with_cell(file.blocks.front().kind, [&]<CellType Cell>(Cell) -> AnyMesh {
+        if constexpr (Cell::dimension == 3) {
+            return corner_mesh(file.as_mesh<3, double, Cell>());
+        } else {
+            if (file.is_flat()) {
+                return corner_mesh(file.as_mesh<2, double, Cell>());
+            }
+            if constexpr (std::same_as<Cell, Tri3>) {
+                return file.as_mesh<3, double, Tri3>();
+            } else {
+                throw FileError(file.file, text("expected triangles for a membrane, found ", Cell::name, " cells"));
+            }
+        }
+    });
 }
 
 } // namespace
@@ -69,7 +91,7 @@ AnyMesh read_mesh(const FitOptions& options) {
     require(is_one_of(kind, {".msh", ".mesh", ".node", ".ele", ".vtk"}), "INPUT",
             "one of .off .obj .stl .ply .poly .wkt .msh .mesh .node .vtk .xdmf .h5", options.input);
     refuse_meshing_options(options);
-    return AnyMesh{};
+    return from_mesh_file(io::read_mesh(options.input));
 }
 
 } // namespace program
