@@ -121,8 +121,8 @@ TEST_CASE("a stop returns the best so far, an exception comes through, a wrong o
     CHECK_THROWS_AS((void)ipopt::exact(problem, {.tolerance = 0}), InvalidArgument);
     CHECK_THROWS_AS((void)ipopt::exact(problem, {.max_iterations = -1}), InvalidArgument);
     CHECK_THROWS_AS((void)ipopt::exact(problem, {.initial = Values<double>::Ones(2)}), InvalidArgument);
-    CHECK(ipopt::exact(problem, {.ipopt = {{"mehrotra_algorithm", "no"}, {"mu_init", 0.01}, {"max_iter", 500}}}).status ==
-          Status::converged);
+    const ipopt::ExactOptions other{.ipopt = {{"mehrotra_algorithm", "no"}, {"mu_init", 0.01}, {"max_iter", 500}}};
+    CHECK(ipopt::exact(problem, other).status == Status::converged);
     CHECK(test::relative_difference(ipopt::exact(problem, {.initial = whole.theta}).theta, whole.theta) < 1e-9);
 }
 

@@ -33,7 +33,7 @@ struct AccelerationOptions {
 ///     m_i a_i^MSM = f_i + sum_e [ k_e (L - l_e) n + c_e ((v_j - v_i) . n) n - q_e n ]
 ///
 /// Nodes clamped in a motion do not count in it. Frames are read once and not kept: memory is about
-/// 4 (unknowns at a node)^2 bytes per node and 32 frames of the motion. Cost per frame: O(sum over nodes of unknowns^2).
+/// 4 (unknowns at a node)^2 bytes per node and 32 frames of the motion. Cost per frame: sum over nodes of unknowns^2.
 /// Sums are in double whatever the Scalar of the data, and do not depend on the number of threads.
 template <int Dim, std::floating_point Scalar>
     requires SpatialDimension<Dim>
@@ -66,7 +66,7 @@ public:
         m_batch = detail::FrameBatch<Dim, Scalar>(network.n_nodes(), m_uses_velocity);
     }
 
-    /// Adds all frames of a motion, times `weight`. Throws InvalidArgument unless it is a valid motion of as many nodes.
+    /// Adds all frames of a motion, times `weight`. Throws InvalidArgument unless it is valid and of as many nodes.
     void add(const Motion<Dim, Scalar>& motion, double weight = 1) {
         require(motion.n_nodes() == n_nodes(), text("motion ", motion.name), text(n_nodes(), " nodes"),
                 motion.n_nodes());

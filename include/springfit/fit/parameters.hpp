@@ -36,8 +36,8 @@ struct ParameterOptions {
     KindOptions<ParameterKind::stiffness> stiffness{};
     KindOptions<ParameterKind::damping> damping{};
     KindOptions<ParameterKind::preload> preload{};
-    /// beta of Kelvin-Voigt springs, s, >= 0: above 0 every fitted stiffness brings its damping c_e = beta k_e along (the
-    /// network's own damping is not used, and damping cannot be fitted besides).
+    /// beta of Kelvin-Voigt springs, s, >= 0: above 0 every fitted stiffness brings its damping c_e = beta k_e along
+    /// (the network's own damping is not used, and damping cannot be fitted besides).
     double damping_per_stiffness = 0;
     /// Weight of `ridge / 2 * h * (theta - prior)^2`, h the mean curvature of the kind; >= 0, 0 switches it off.
     double ridge = 0;
@@ -57,7 +57,7 @@ class Parameters {
 public:
     Parameters() = default;
 
-    /// Numbers every spring or group. Throws InvalidArgument where a size, bound or prior is wrong or nothing is fitted.
+    /// Numbers every spring or group. Throws InvalidArgument where a size, bound or prior is wrong, or for no unknown.
     template <int Dim, std::floating_point Scalar>
     Parameters(const SpringNetwork<Dim, Scalar>& network, const ParameterOptions& options)
         : m_rest_length(network.rest_length.template cast<double>()),

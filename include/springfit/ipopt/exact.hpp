@@ -26,10 +26,10 @@ struct ExactOptions {
 /// stiffness and damping may differ by orders of magnitude.
 ///
 /// Ipopt's point is then polished by an active set that starts there, since an interior point keeps a gap from bounds.
-/// `theta` is within the bounds to the last bit. Where the callback asks to stop, the best point so far is returned with
-/// the status `interrupted`; an exception from the callback ends the solve and is thrown on. Throws InvalidArgument for
-/// an option that Ipopt refuses and for an `initial` of the wrong size or not finite. Cost per iteration: one sparse
-/// factorisation of the Hessian.
+/// `theta` is within the bounds to the last bit. Where the callback asks to stop, the best point so far is returned
+/// with the status `interrupted`; an exception from the callback ends the solve and is thrown on. Throws
+/// InvalidArgument for an option that Ipopt refuses and for an `initial` of the wrong size or not finite. Cost per
+/// iteration: one sparse factorisation of the Hessian.
 [[nodiscard]] FitReport exact(const FitProblem& problem, const ExactOptions& options = {});
 
 } // namespace springfit::ipopt

@@ -9,7 +9,8 @@ template <int Dim, std::floating_point Scalar>
     requires SpatialDimension<Dim>
 void AccelerationObjective<Dim, Scalar>::index_springs(const SpringNetwork<Dim, Scalar>& network) {
     const auto known = [&](ParameterKind kind, const Values<Scalar>& given) {
-        return m_parameters.fits(kind) ? Values<double>::Zero(given.size()).eval() : given.template cast<double>().eval();
+        const Values<double> values = given.template cast<double>();
+        return m_parameters.fits(kind) ? Values<double>(Values<double>::Zero(given.size())) : values;
     };
     m_stiffness = known(ParameterKind::stiffness, network.stiffness);
     m_damping = known(ParameterKind::damping, network.damping);

@@ -11,8 +11,8 @@ namespace springfit {
 
 namespace detail {
 
-/// Part of the curvature that is added to a block, pulling to where it is: keeps singular blocks solvable. What the data
-/// determines hardly feels it, and a second solve from the first result removes what it felt.
+/// Part of the curvature that is added to a block, pulling to where it is: keeps singular blocks solvable. What the
+/// data determines hardly feels it, and a second solve from the first result removes what it felt.
 inline constexpr double proximity = 1e-11;
 
 /// One node term on its own.

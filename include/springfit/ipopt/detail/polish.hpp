@@ -8,8 +8,8 @@ namespace springfit::ipopt::detail {
 /// Sharpens a point near the minimiser of the scaled problem: an interior-point method leaves a gap of about
 /// sqrt(tolerance) where an unknown is close to its bound with hardly a multiplier.
 ///
-/// Primal-dual active set: what x minus its gradient would move beyond a bound is put on the bound, the rest is solved for
-/// by conjugate gradients (the diagonal is 1), until the set stays. Nothing is kept that does not lower the residual.
+/// Primal-dual active set: what x minus its gradient would move beyond a bound is put on the bound, the rest is solved
+/// for by conjugate gradients (the diagonal is 1), until the set stays. Nothing is kept that does not lower the residual.
 class Polish {
 public:
     explicit Polish(const ScaledProblem& problem) : m_problem(problem) {}
