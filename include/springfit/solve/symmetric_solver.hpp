@@ -16,7 +16,8 @@ namespace springfit {
 /// The symbolic analysis is done once. A numeric factorisation is kept as the preconditioner of conjugate gradients for
 /// the matrices that follow, and is renewed when they take more than `max_cg_iterations`: near each other, as from one
 /// Newton or time step to the next, a few cheap iterations replace an expensive factorisation. Well conditioned
-/// matrices, as of short time steps, need none: `set_max_diagonal_iterations` tries the diagonal as preconditioner first.
+/// matrices, as of short time steps, need none: `set_max_diagonal_iterations` tries the diagonal as preconditioner before
+/// a new factorisation.
 ///
 /// A matrix that is not positive definite is shifted, A + s diag(|A|), until it is: the Newton direction then points
 /// downhill. (With the diagonal as preconditioner, the iterate before the negative curvature is returned instead, which
@@ -31,20 +32,25 @@ public:
     void reset() {
         m_analysed = false;
         m_factorised = false;
-        m_diagonal_suffices = true;
     }
 
     /// Allow 0 iterations to factorise every matrix anew.
     void set_max_cg_iterations(int iterations) { m_max_cg_iterations = iterations; }
 
-    /// Iterations with the diagonal as preconditioner that are tried before any factorisation; 0, the default: none.
-    /// The first matrix that needs more ends these attempts until `reset`.
+    /// Iterations with the diagonal as preconditioner that are tried before every factorisation; 0, the default: none.
     void set_max_diagonal_iterations(int iterations) { m_max_diagonal_iterations = iterations; }
 
     /// The solution to a relative residual of `tolerance`; false where no factorisation could be had.
     [[nodiscard]] bool solve(const SymmetricMatrix<Scalar>& a, const Values<Scalar>& b, Values<Scalar>& x,
                              Scalar tolerance) {
-        if (m_max_diagonal_iterations > 0 && m_diagonal_suffices) {
+        if (m_factorised && m_max_cg_iterations > 0 &&
+            conjugate_gradients(a, b, x, tolerance, m_max_cg_iterations,
+                                [&](const Values<Scalar>& r, Values<Scalar>& z) { z = apply_factor(r); }) ==
+                Outcome::solved) {
+            return true;
+        }
+        m_factorised = false; // too far away by now
+        if (m_max_diagonal_iterations > 0) {
             const Values<Scalar> inverse =
                 a.diagonal().unaryExpr([](Scalar d) { return d > 0 ? 1 / d : Scalar(1); });
             const auto outcome = conjugate_gradients(
@@ -53,13 +59,6 @@ public:
             if (outcome == Outcome::solved || (outcome == Outcome::indefinite && b.dot(x) > 0)) {
                 return true;
             }
-            m_diagonal_suffices = false;
-        }
-        if (m_factorised && m_max_cg_iterations > 0 &&
-            conjugate_gradients(a, b, x, tolerance, m_max_cg_iterations,
-                                [&](const Values<Scalar>& r, Values<Scalar>& z) { z = apply_factor(r); }) ==
-                Outcome::solved) {
-            return true;
         }
         if (!factorise(a)) {
             return false;
@@ -187,7 +186,6 @@ private:
     Eigen::SimplicialLDLT<SparseMatrix<Scalar>, Eigen::Lower> m_factor;
     bool m_analysed = false;
     bool m_factorised = false;
-    bool m_diagonal_suffices = true;
     int m_max_cg_iterations = 12;
     int m_max_diagonal_iterations = 0;
     int m_n_factorisations = 0;
