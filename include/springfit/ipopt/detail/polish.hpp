@@ -9,7 +9,7 @@ namespace springfit::ipopt::detail {
 /// sqrt(tolerance) where an unknown is close to its bound with hardly a multiplier.
 ///
 /// Primal-dual active set: what x minus its gradient would move beyond a bound is put on the bound, the rest is solved
-/// for by conjugate gradients (the diagonal is 1), until the set stays. Nothing is kept that does not lower the residual.
+/// for by conjugate gradients (the diagonal is 1), until the set stays. A point is kept only for a lower residual.
 class Polish {
 public:
     explicit Polish(const ScaledProblem& problem) : m_problem(problem) {}
