@@ -4,6 +4,10 @@
 /// Everything that needs Eigen alone. Meshing (`cgal/`), the exact fit (`ipopt/`), files (`io/`) and threads
 /// (`parallel/`) are included one by one.
 
+#include <springfit/closed_form/baudet.hpp>
+#include <springfit/closed_form/cubic_cell.hpp>
+#include <springfit/closed_form/projection.hpp>
+#include <springfit/closed_form/van_gelder.hpp>
 #include <springfit/core/version.hpp>
 #include <springfit/fem/dynamics.hpp>
 #include <springfit/fem/loads.hpp>
@@ -11,6 +15,12 @@
 #include <springfit/mesh/structured.hpp>
 #include <springfit/motion/record.hpp>
 #include <springfit/motion/user_reference.hpp>
-#include <springfit/network/spring_network.hpp>
+#include <springfit/network/damping.hpp>
+#include <springfit/network/forces.hpp>
+#include <springfit/network/topology.hpp>
+#include <springfit/score/motion_error.hpp>
 #include <springfit/solve/clique_matrix.hpp>
 #include <springfit/solve/newton.hpp>
+#include <springfit/step/equilibrium.hpp>
+#include <springfit/step/implicit_euler.hpp>
+#include <springfit/step/symplectic_euler.hpp>

@@ -191,3 +191,27 @@ TEST_CASE("options and steps out of range are refused") {
     CHECK_THROWS_AS((void)stepper.start(scenario), InvalidArgument);
     CHECK_THROWS_AS((void)equilibrium(network, scenario), InvalidArgument);
 }
+
+TEST_CASE_TEMPLATE("large implicit steps and equilibria of a body that bends under its own weight", Scalar, float,
+                   double) {
+    auto mesh = tetrahedron_grid<Scalar>({8, 3, 3}, {Scalar(0.8), Scalar(0.3), Scalar(0.3)});
+    jitter(mesh, Scalar(0.2), 1);
+    auto network = springs_along_edges(mesh, {.density = 1000});
+    network.stiffness = 2000 * network.rest_length; // N/m: about 5 kPa
+    Scenario<3, Scalar> scenario;
+    scenario.clamps.emplace_back();
+    for (Index i = 0; i < network.n_nodes(); ++i) {
+        if (network.rest_positions(0, i) < Scalar(1e-6)) {
+            scenario.clamps[0].nodes.push_back(static_cast<int>(i));
+        }
+    }
+    scenario.gravity.push_back({{0, 0, Scalar(-9.81)}, {}});
+    ImplicitEuler<3, Scalar> stepper(network);
+    const auto bent = run(stepper, scenario, Scalar(0.02), 100);
+    CHECK((bent.positions - network.rest_positions).cwiseAbs().maxCoeff() > Scalar(0.1));
+    scenario.gravity[0].acceleration *= Scalar(0.2);
+    const auto sagging = equilibrium(network, scenario);
+    CHECK(sagging.status == Status::converged);
+    CHECK(sagging.stable);
+    CHECK(sagging.iterations < 200);
+}
