@@ -78,9 +78,11 @@ ReferenceCases<Dim> record_cases(const FemReference<Dim>& reference, const Discr
 
     const auto& rest = body.network.rest_positions;
     const double size = (rest.rowwise().maxCoeff() - rest.rowwise().minCoeff()).norm();
-    Body<Dim, double> loaded{rest, body.network.mass, body.surface, {}};
     const auto clamps = options.clamps.empty() ? std::vector<std::string>{"y-min"} : options.clamps;
-    loaded.clamps.push_back({clamped_nodes<Dim>(clamps, rest), {}});
+    const std::vector<int> held = clamped_nodes<Dim>(clamps, rest);
+    Body<Dim, double> loaded{rest, body.network.mass, {}, {{held, {}}}};
+    std::set_difference(body.surface.begin(), body.surface.end(), held.begin(), held.end(),
+                        std::back_inserter(loaded.surface)); // a load on held nodes moves nothing
     auto cases = random_loads(loaded, {.training = options.training_cases.value_or(6),
                                        .held_out = options.held_out_cases.value_or(3),
                                        .seed = options.seed});

@@ -12,8 +12,13 @@
 #include <springfit/fem/dynamics.hpp>
 #include <springfit/fem/loads.hpp>
 #include <springfit/fem/statics.hpp>
+#include <springfit/fit/acceleration_objective.hpp>
+#include <springfit/fit/dominant_term.hpp>
 #include <springfit/mesh/structured.hpp>
+#include <springfit/motion/load_cases.hpp>
 #include <springfit/motion/record.hpp>
+#include <springfit/motion/replay.hpp>
+#include <springfit/motion/transfer.hpp>
 #include <springfit/motion/user_reference.hpp>
 #include <springfit/network/damping.hpp>
 #include <springfit/network/forces.hpp>

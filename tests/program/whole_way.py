@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The program's way from a body to files: what it writes is complete, agrees with itself and can be read by others."""
+
+import json
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import xml.etree.ElementTree
+
+import h5py
+import numpy
+
+import bodies
+
+PROGRAM = sys.argv[1]
+folder = pathlib.Path(tempfile.mkdtemp(prefix="springfit-"))
+
+
+def run(*arguments, code=0):
+    result = subprocess.run([PROGRAM] + [str(a) for a in arguments], capture_output=True, text=True)
+    assert result.returncode == code, (result.returncode, result.stdout, result.stderr)
+    return result
+
+
+def check_model(model, nodes, springs, dimension):
+    assert (model["format"], model["version"], model["units"]) == ("springfit-model", 1, "SI")
+    assert model["dimension"] == dimension and model["damping_law"] == "axial"
+    assert numpy.array(model["nodes"]["rest_position"]).shape == (nodes, dimension)
+    assert numpy.all(numpy.array(model["nodes"]["mass"]) > 0) and len(model["nodes"]["mass"]) == nodes
+    assert numpy.array(model["springs"]["nodes"]).shape == (springs, 2)
+    for name in ("stiffness", "rest_length", "damping"):
+        values = numpy.array(model["springs"][name])
+        assert values.shape == (springs,) and numpy.all(values >= 0) and numpy.all(numpy.isfinite(values)), name
+    assert model["stable_time_step"] > 0 and "springfit" in model["provenance"]
+
+
+def check_motion(out, nodes, springs, dimension, fitted_only=False):
+    with h5py.File(out / "motion.h5") as file:
+        frames = file["/time"].shape[0]
+        assert file["/mesh/points"].shape == (nodes, dimension) and file["/mesh/points"].dtype == numpy.float64
+        assert file["/springs"].shape == (springs, 2)
+        names = ["/fitted/displacement"]
+        if not fitted_only:
+            names += [f"/reference/{name}" for name in ("displacement", "velocity", "force")]
+        for name in names:
+            assert file[name].shape == (frames, nodes, dimension), name
+            assert numpy.all(numpy.isfinite(file[name][:])), name
+    root = xml.etree.ElementTree.parse(out / "motion.xdmf").getroot()
+    assert len(list(root.iter("Time"))) >= frames
+    return frames
+
+
+# A cube of soft rubber, by FEM.
+bodies.write_off(folder / "cube.off", bodies.CUBE_POINTS, bodies.CUBE_FACES)
+out = folder / "cube"
+run("fit", folder / "cube.off", "--young", 1e4, "--poisson", 0.3, "--density", 1000, "--nodes", 60, "--training-cases",
+    2, "--held-out-cases", 2, "--frames", 12, "--seed", 3, "--out", out)
+assert sorted(p.name for p in out.iterdir()) == ["model.json", "motion.h5", "motion.xdmf", "report.json"]
+model = json.load(open(out / "model.json"))
+report = json.load(open(out / "report.json"))
+check_model(model, report["nodes"], report["springs"], 3)
+check_motion(out, report["nodes"], report["springs"], 3)
+assert abs(sum(model["nodes"]["mass"]) - 1000) < 1e-6
+baselines = report["held_out"]["baselines"]
+assert {"van_gelder", "dominant_term", "exact"} <= set(baselines)
+assert report["held_out"]["error"] == min(e for e in baselines.values() if e is not None)
+assert report["method"] in baselines and set(report["training"]["baselines"]) == set(baselines)
+assert report["detail"]["seed"] == 3
+
+# The same seed gives the same model, on any number of threads.
+again = folder / "again"
+run("fit", folder / "cube.off", "--young", 1e4, "--poisson", 0.3, "--density", 1000, "--nodes", 60, "--training-cases",
+    2, "--held-out-cases", 2, "--frames", 12, "--seed", 3, "--threads", 1, "--out", again)
+assert json.load(open(again / "model.json")) == model
+
+# One method alone is returned even where another would be better.
+run("fit", folder / "cube.off", "--young", 1e4, "--poisson", 0.3, "--density", 1000, "--nodes", 60, "--training-cases",
+    1, "--held-out-cases", 1, "--frames", 8, "--method", "dominant-term", "--out", again)
+assert json.load(open(again / "report.json"))["method"] == "dominant_term"
+
+# The fitted model, stepped.
+for integrator in ("explicit", "implicit"):
+    stepped = folder / integrator
+    run("simulate", out / "model.json", "--duration", 0.2, "--frames", 11, "--integrator", integrator, "--gravity=0,0,-1",
+        "--out", stepped)
+    assert check_motion(stepped, report["nodes"], report["springs"], 3, fitted_only=True) == 11
+
+# A motion that another program recorded, of a spring network: its springs are found again.
+points, triangles = bodies.strip_of_squares(6)
+edges = sorted({tuple(sorted((t[a], t[(a + 1) % 3]))) for t in triangles for a in range(3)})
+edges = numpy.array(edges)
+random = numpy.random.default_rng(5)
+stiffness = 100 * 10 ** random.random(len(edges))
+damping = 0.2 * random.random(len(edges))
+mass = numpy.zeros(len(points))
+for t in triangles:
+    mass[t] += 10 * 0.5 / 3
+rest = numpy.linalg.norm(points[edges[:, 1]] - points[edges[:, 0]], axis=1)
+held = points[:, 0] == 0
+gravity = numpy.array([0.3, -1.0])
+
+
+def acceleration(x, v):
+    r = x[edges[:, 1]] - x[edges[:, 0]]
+    length = numpy.linalg.norm(r, axis=1)
+    n = r / length[:, None]
+    rate = numpy.sum((v[edges[:, 1]] - v[edges[:, 0]]) * n, axis=1)
+    f = (stiffness * (length - rest) + damping * rate)[:, None] * n
+    total = mass[:, None] * gravity
+    numpy.add.at(total, edges[:, 0], f)
+    numpy.add.at(total, edges[:, 1], -f)
+    a = total / mass[:, None]
+    a[held] = 0
+    return a
+
+
+frames, substeps, dt = 60, 40, 0.02
+x, v = points + 0.1 * random.standard_normal(points.shape), numpy.zeros(points.shape)
+x[held] = points[held]
+record = {"displacement": [], "velocity": [], "acceleration": [], "force": []}
+for frame in range(frames):
+    record["displacement"].append(x - points)
+    record["velocity"].append(v)
+    record["acceleration"].append(acceleration(x, v))
+    record["force"].append(mass[:, None] * gravity)
+    h = dt / substeps
+    for _ in range(substeps):  # velocity Verlet with damping at the half step's velocity
+        half = v + h / 2 * acceleration(x, v)
+        x = x + h * half
+        v = half + h / 2 * acceleration(x, half)
+with h5py.File(folder / "strip.h5", "w") as file:
+    file["/mesh/points"], file["/mesh/cells"], file["/time"] = points, triangles, dt * numpy.arange(frames)
+    for name, values in record.items():
+        file[f"/reference/{name}"] = numpy.array(values)
+for method, name in (("exact", "exact"), ("dominant-term", "dominant_term")):
+    out = folder / method
+    run("fit", folder / "strip.h5", "--young", 1e3, "--poisson", 0.3, "--density", 10, "--damping", "fitted", "--method",
+        method, "--out", out)
+    model = json.load(open(out / "model.json"))
+    report = json.load(open(out / "report.json"))
+    check_model(model, len(points), len(edges), 2)
+    found = {tuple(sorted(ends)): values for *values, ends in
+             zip(model["springs"]["stiffness"], model["springs"]["damping"], model["springs"]["nodes"])}
+    # A spring between two held nodes moves nothing: no motion can tell its stiffness.
+    free = [e for e, (i, j) in enumerate(edges) if not (held[i] and held[j])]
+    k = numpy.array([found[tuple(edges[e])] for e in free])
+    assert numpy.max(numpy.abs(k[:, 0] / stiffness[free] - 1)) < 1e-6, method
+    assert numpy.max(numpy.abs(k[:, 1] - damping[free])) < 1e-6 * numpy.max(damping), method
+    assert report["method"] == name and report["held_out"]["error"] < 1e-2, report["held_out"]
+
+# Ctrl-C: the best result so far, complete, or nothing at all.
+out = folder / "interrupted"
+process = subprocess.Popen([PROGRAM, "fit", folder / "cube.off", "--young", "1e4", "--poisson", "0.45", "--density", "1000",
+                            "--nodes", "300", "--training-cases", "40", "--frames", "60", "--out", out],
+                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+time.sleep(4)
+process.send_signal(signal.SIGINT)
+assert process.wait(timeout=120) == 130
+if out.exists():
+    assert sorted(p.name for p in out.iterdir()) == ["model.json", "motion.h5", "motion.xdmf", "report.json"]
+    report = json.load(open(out / "report.json"))
+    assert report["status"] == "interrupted"
+    check_model(json.load(open(out / "model.json")), report["nodes"], report["springs"], 3)
+print("ok")

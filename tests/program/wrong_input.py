@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Every wrong input: exit code 2, one error line that names the thing, and no file left behind."""
+
+import os
+import pathlib
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+
+import numpy
+
+import bodies
+
+PROGRAM = sys.argv[1]
+MATERIAL = ["--young", "1e4", "--poisson", "0.3", "--density", "1000"]
+QUICK = ["--nodes", "40", "--training-cases", "1", "--held-out-cases", "1", "--frames", "6"]
+
+folder = pathlib.Path(tempfile.mkdtemp(prefix="springfit-"))
+failures = 0
+
+
+def file_size_limit():
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (2048, 2048))
+
+
+def refused(what, arguments, words, out=None, limit=None):
+    """Runs the program and checks that it refuses with all of `words` in its one error line."""
+    global failures
+    out = out or folder / "out" / what.replace(" ", "-")
+    before = {p for p in folder.rglob("*") if p.is_file()}
+    result = subprocess.run([PROGRAM] + [str(a) for a in arguments] + ["--out", str(out)], capture_output=True,
+                            text=True, preexec_fn=limit)
+    errors = [line for line in result.stderr.splitlines() if line.startswith("springfit: ")]
+    left = {p for p in folder.rglob("*") if p.is_file()} - before
+    problems = []
+    if result.returncode != 2:
+        problems.append(f"exit code {result.returncode}")
+    if len(errors) != 1:
+        problems.append(f"{len(errors)} error lines")
+    problems += [f"'{word}' is not in the error" for word in words if not errors or word not in errors[0]]
+    if left:
+        problems.append(f"left behind: {sorted(str(p) for p in left)}")
+    print(f"{'FAILED' if problems else 'ok':6} {what}: {errors[0] if errors else result.stderr[-300:]}")
+    for problem in problems:
+        print("       ", problem)
+    failures += bool(problems)
+
+
+cube = folder / "cube.off"
+bodies.write_off(cube, bodies.CUBE_POINTS, bodies.CUBE_FACES)
+
+# Files
+refused("missing file", ["fit", folder / "none.off", *MATERIAL], ["none.off"])
+(folder / "picture.png").write_text("x")
+refused("unknown kind of file", ["fit", folder / "picture.png", *MATERIAL], ["picture.png", ".off"])
+(folder / "empty.off").write_text("")
+refused("empty file", ["fit", folder / "empty.off", *MATERIAL], ["empty.off"])
+bodies.write_off(folder / "no-faces.off", [], [])
+refused("empty surface", ["fit", folder / "no-faces.off", *MATERIAL], ["no-faces.off"])
+bodies.write_off(folder / "open.off", bodies.CUBE_POINTS, bodies.CUBE_FACES[:-1])
+refused("open surface", ["fit", folder / "open.off", *MATERIAL], ["open.off", "4 boundary edges", "1 hole"])
+shifted = [(x + 0.5, y + 0.5, z + 0.5) for x, y, z in bodies.CUBE_POINTS]
+crossing = bodies.CUBE_FACES + [tuple(i + 8 for i in face) for face in bodies.CUBE_FACES]
+bodies.write_off(folder / "crossing.off", bodies.CUBE_POINTS + shifted, crossing)
+refused("self-intersecting surface", ["fit", folder / "crossing.off", *MATERIAL], ["crossing.off", "intersect"])
+bodies.write_off(folder / "nan.off", [("nan", 0, 0)] + bodies.CUBE_POINTS[1:], bodies.CUBE_FACES)
+refused("NaN vertex", ["fit", folder / "nan.off", *MATERIAL], ["nan.off"])
+bodies.write_gmsh_tets(folder / "inverted.msh", [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1)],
+                       [(0, 1, 2, 3), (1, 3, 2, 4)])
+refused("inverted element", ["fit", folder / "inverted.msh", *MATERIAL], ["cell 1"])
+refused("missing model", ["simulate", folder / "none.json"], ["none.json"])
+(folder / "broken.json").write_text('{"format": "springfit-model", "version": 1, "dimension": 3')
+refused("broken model", ["simulate", folder / "broken.json"], ["broken.json"])
+
+# Values
+def material(**changed):
+    values = {"young": "1e4", "poisson": "0.3", "density": "1000"} | changed
+    return [part for name, value in values.items() for part in (f"--{name}={value}",)]
+
+
+refused("nu of 0.5", ["fit", cube, *material(poisson="0.5")], ["poisson", "(-1, 0.5)", "0.5"])
+refused("nu that is NaN", ["fit", cube, *material(poisson="nan")], ["poisson", "nan"])
+refused("negative density", ["fit", cube, *material(density="-1")], ["density", "-1"])
+refused("Young's modulus of 0", ["fit", cube, *material(young="0")], ["young", "0"])
+refused("unknown method", ["fit", cube, *MATERIAL, "--method", "magic"], ["--method", "magic"])
+refused("unknown material", ["fit", cube, *MATERIAL, "--material", "cheese"], ["--material", "cheese"])
+refused("unknown option", ["fit", cube, *MATERIAL, "--colour", "red"], ["--colour"])
+refused("missing option", ["fit", cube, "--young", "1e4", "--poisson", "0.3"], ["--density"])
+refused("element of other cells", ["fit", cube, *MATERIAL, *QUICK, "--element", "quad4"], ["--element", "quad4"])
+refused("unknown clamp", ["fit", cube, *MATERIAL, *QUICK, "--clamp", "left"], ["--clamp", "left"])
+refused("two sizes", ["fit", cube, *MATERIAL, "--nodes", "40", "--cell-size", "0.3"], ["--nodes", "--cell-size"])
+refused("thickness of a solid", ["fit", cube, *MATERIAL, *QUICK, "--thickness", "0.1"], ["--thickness"])
+
+# Output
+(folder / "file").write_text("x")
+refused("output folder that is a file", ["fit", cube, *MATERIAL], ["file"], out=folder / "file")
+refused("unwritable output folder", ["fit", cube, *MATERIAL], ["/proc/springfit"], out=pathlib.Path("/proc/springfit"))
+refused("full disk", ["fit", cube, *MATERIAL, *QUICK], ["motion.h5"], limit=file_size_limit)
+
+# Recorded references
+points, triangles = bodies.strip_of_squares(4)
+times = numpy.linspace(0, 1, 12)
+shape = (len(times), *points.shape)
+displacement = numpy.zeros(shape)
+displacement[:, :, 1] = 0.01 * numpy.outer(numpy.sin(times), points[:, 0])
+bodies.write_motion(folder / "strip.h5", points, triangles, times, displacement)
+other_points, other_triangles = bodies.strip_of_squares(5)
+other = numpy.zeros((len(times), *other_points.shape))
+bodies.write_motion(folder / "other.h5", other_points, other_triangles, times, other)
+refused("reference with other node count",
+        ["fit", folder / "strip.h5", *MATERIAL, "--reference", folder / "other.h5"], ["15 nodes", "18"])
+bodies.write_motion(folder / "no-displacement.h5", points, triangles, times, displacement,
+                    leave_out=["/reference/displacement"])
+refused("missing column", ["fit", folder / "no-displacement.h5", *MATERIAL], ["/reference/displacement"])
+displacement[3, 2, 1] = numpy.nan
+bodies.write_motion(folder / "nan.h5", points, triangles, times, displacement)
+refused("NaN in a motion", ["fit", folder / "nan.h5", *MATERIAL], ["nan.h5", "/reference/displacement"])
+refused("meshing option for a motion", ["fit", folder / "strip.h5", *MATERIAL, "--nodes", "100"], ["--nodes"])
+refused("FEM option for a motion", ["fit", folder / "strip.h5", *MATERIAL, "--element", "tri6"], ["--element"])
+
+sys.exit(1 if failures else 0)
