@@ -88,7 +88,9 @@ TEST_CASE("a name that cannot be written to is refused at once") {
           (folder / "taken").string() + ": cannot be written: it is a folder");
     CHECK(file_error([&] { write_file(folder / "none/a.txt", ""); }) ==
           (folder / "none/a.txt").string() + ": cannot be created: No such file or directory");
-    CHECK(file_error([&] { write_file(unwritable / "a.txt", ""); }).starts_with("/proc/self/task/a.txt: cannot be created: "));
+    CHECK(file_error([&] {
+              write_file(unwritable / "a.txt", "");
+          }).starts_with("/proc/self/task/a.txt: cannot be created: "));
 }
 
 TEST_CASE("an output folder is created with its parents, and goes again where nothing was put in") {
@@ -104,9 +106,7 @@ TEST_CASE("an output folder is created with its parents, and goes again where no
         write_file(output.path() / "kept.txt", "x");
     }
     CHECK(content(folder / "a/b/kept.txt") == "x");
-    {
-        const OutputFolder output(folder / "a/b");
-    }
+    { const OutputFolder output(folder / "a/b"); }
     CHECK(content(folder / "a/b/kept.txt") == "x");
 }
 
@@ -116,10 +116,12 @@ TEST_CASE("an output folder that is a file or cannot be written to is refused") 
     CHECK(file_error([&] { OutputFolder output(folder / "file"); }) ==
           (folder / "file").string() + ": cannot be the output folder: it is a file");
     CHECK(file_error([&] { OutputFolder output(folder / "file/sub"); }) ==
-          (folder / "file/sub").string() + ": cannot be the output folder: " + (folder / "file").string() + " is a file");
+          (folder / "file/sub").string() + ": cannot be the output folder: " + (folder / "file").string() +
+              " is a file");
     CHECK(file_error([&] { OutputFolder output(unwritable); }).starts_with("/proc/self/task: cannot be written to: "));
-    CHECK(file_error([&] { OutputFolder output(unwritable / "sub"); })
-              .starts_with("/proc/self/task/sub: cannot be created: "));
+    CHECK(file_error([&] {
+              OutputFolder output(unwritable / "sub");
+          }).starts_with("/proc/self/task/sub: cannot be created: "));
     {
         const FileSizeLimit limit(4);
         CHECK(file_error([&] { OutputFolder output(folder / "new/sub"); }) ==

@@ -95,8 +95,12 @@ TEST_CASE("random doubles read back bit for bit") {
 
 TEST_CASE("the text of a model is the contract's") {
     Model<2, double> model;
-    model.network = {Points<2, double>{{0, 1}, {0, 0.5}}, NodePairs{{0}, {1}}, Values<double>{{2.5}}, Values<double>{{1}},
-                     Values<double>{{0}}, Values<double>{{1, 1}}};
+    model.network = {Points<2, double>{{0, 1}, {0, 0.5}},
+                     NodePairs{{0}, {1}},
+                     Values<double>{{2.5}},
+                     Values<double>{{1}},
+                     Values<double>{{0}},
+                     Values<double>{{1, 1}}};
     model.fixed = {0};
     model.stable_time_step = 0.25;
     model.provenance["springfit"] = "0.1.0";
@@ -137,9 +141,9 @@ TEST_CASE("a model that JSON cannot hold is refused by name and nothing is writt
                          "stable_time_step: expected a positive time step, found inf", InvalidArgument);
     model = example<3, double>();
     model.provenance["material"]["young"] = std::nan("");
-    CHECK_THROWS_WITH_AS(
-        write_model(folder / "model.json", model),
-        "provenance: expected finite numbers, found a value that is not finite at /material/young", InvalidArgument);
+    CHECK_THROWS_WITH_AS(write_model(folder / "model.json", model),
+                         "provenance: expected finite numbers, found a value that is not finite at /material/young",
+                         InvalidArgument);
     model = example<3, double>();
     model.fixed = {2, 2};
     CHECK_THROWS_AS(write_model(folder / "model.json", model), InvalidArgument);
@@ -180,7 +184,8 @@ TEST_CASE("what is missing or wrong in a model is named by its JSON pointer") {
           "model.json: /springs/nodes/2/0: expected a whole number in [0, 4), found 1.5");
     CHECK(replaced("/springs/nodes/2/0", -1) ==
           "model.json: /springs/nodes/2/0: expected a whole number in [0, 4), found -1");
-    CHECK(replaced("/springs/nodes/2", {1, 1}) == "model.json: /springs/nodes/2: expected two different nodes, found [1,1]");
+    CHECK(replaced("/springs/nodes/2", {1, 1}) ==
+          "model.json: /springs/nodes/2: expected two different nodes, found [1,1]");
     CHECK(replaced("/springs/stiffness", {1}) ==
           "model.json: /springs/stiffness: expected an array of 3, one number per spring, found an array of 1");
     CHECK(replaced("/springs/stiffness/0", -2) ==

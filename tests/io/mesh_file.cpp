@@ -55,8 +55,8 @@ struct GmshText {
 
 using Position = std::array<double, 3>;
 /// Four corners of a box and a fifth point off them, under numbers with gaps; the first is in no cell.
-const std::vector<std::pair<int, Position>> numbered_points{
-    {7, {9, 9, 9}}, {100, {0, 0, 0}}, {3, {1, 0, 0}}, {5, {0, 2, 0}}, {42, {0, 0, 1}}, {43, {2, 2, 2}}};
+const std::vector<std::pair<int, Position>> numbered_points{{7, {9, 9, 9}}, {100, {0, 0, 0}}, {3, {1, 0, 0}},
+                                                            {5, {0, 2, 0}}, {42, {0, 0, 1}},  {43, {2, 2, 2}}};
 
 /// Two tetrahedra in two blocks, a triangle and a line beside them.
 std::string gmsh_2(bool binary) {
@@ -199,7 +199,8 @@ TEST_CASE("quadratic and mixed cells of Gmsh") {
 
 TEST_CASE("what is wrong in a Gmsh file is named with its line") {
     const auto with = [](const std::string& nodes, const std::string& elements) {
-        return refusal("a.msh", gmsh_head + "$Nodes\n" + nodes + "\n$EndNodes\n$Elements\n" + elements + "\n$EndElements\n");
+        return refusal("a.msh",
+                       gmsh_head + "$Nodes\n" + nodes + "\n$EndNodes\n$Elements\n" + elements + "\n$EndElements\n");
     };
     const std::string good = "3\n1 0 0 0\n2 1 0 0\n3 0 1 0";
     CHECK(with(good, "1\n1 2 0 1 2 3") == "no FileError");
@@ -215,6 +216,8 @@ TEST_CASE("what is wrong in a Gmsh file is named with its line") {
     CHECK(refusal("a.msh", "$NOD\n") == ":1: expected $MeshFormat: not a Gmsh file, or of version 1");
     CHECK(refusal("a.msh", "$MeshFormat\n4 0 8\n") == ":2: Gmsh version 4; save it as version 4.1 or 2.2");
     CHECK(refusal("a.msh", gmsh_head) == ": has no section $Nodes");
+    CHECK(refusal("a.msh", gmsh_head + "$ParametricNodes\n0\n$EndParametricNodes\n") ==
+          ":4: $ParametricNodes; save the mesh without parametric coordinates");
     CHECK(refusal("a.msh", gmsh_head + "$Elements\n0\n$EndElements\n") == ":4: $Elements before $Nodes");
     std::string other = gmsh_2(true);
     std::swap(other[other.find("8\n") + 2], other[other.find("8\n") + 5]);
@@ -223,8 +226,9 @@ TEST_CASE("what is wrong in a Gmsh file is named with its line") {
 
 TEST_CASE("MEDIT meshes, with sections of no concern") {
     const std::string head = "MeshVersionFormatted 2\n# a comment 3\nDimension\n3\n";
-    const MeshFile file = read("a.mesh", head + "Vertices\n4\n0 0 0 1\n1 0 0 1\n0 1 0 1\n0 0 1e0 1\nCorners\n2\n1\n2\n"
-                                                "Triangles\n1\n1 2 3 7\nTetrahedra\n1\n1 2 3 4 0\nNormals\n1\n0. 0 -1\nEnd\n");
+    const MeshFile file =
+        read("a.mesh", head + "Vertices\n4\n0 0 0 1\n1 0 0 1\n0 1 0 1\n0 0 1e0 1\nCorners\n2\n1\n2\n"
+                              "Triangles\n1\n1 2 3 7\nTetrahedra\n1\n1 2 3 4 0\nNormals\n1\n0. 0 -1\nEnd\n");
     CHECK(file.as_mesh<3, float, Tet4>().cells == Mesh<3, float, Tet4>::CellArray{{0}, {1}, {2}, {3}});
     CHECK(file.notes == std::vector<std::string>{"left out: 1 triangles"});
     const MeshFile flat = read("a.mesh", "MeshVersionFormatted 2 Dimension 2 Vertices 4 0 0 0 1 0 0 1 2 0 0 2 0 "
@@ -237,8 +241,9 @@ TEST_CASE("MEDIT meshes, with sections of no concern") {
 }
 
 TEST_CASE("VTK legacy grids, with cells as lists and with offsets") {
-    const std::string head = "# vtk DataFile Version 5.1\nany title\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 double\n"
-                             "0 0 0 1 0 0 1 1 0 0 1 0\n0 0 1 1 0 1 1 1 1 0 1 1\nMETADATA\nINFORMATION 0\n\n";
+    const std::string head =
+        "# vtk DataFile Version 5.1\nany title\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 double\n"
+        "0 0 0 1 0 0 1 1 0 0 1 0\n0 0 1 1 0 1 1 1 1 0 1 1\nMETADATA\nINFORMATION 0\n\n";
     const auto check = [](const MeshFile& file) {
         CHECK(file.as_mesh<3, double, Hex8>().cells.col(0) == Eigen::Matrix<int, 8, 1>{0, 1, 2, 3, 4, 5, 6, 7});
         CHECK(file.notes == std::vector<std::string>{"left out: 1 quadrilaterals"});
@@ -250,9 +255,11 @@ TEST_CASE("VTK legacy grids, with cells as lists and with offsets") {
           ":14: cell 0, one of the hexahedra, has 4 nodes");
     CHECK(refusal("a.vtk", head + "CELLS 1 5\n4 0 1 2 8\nCELL_TYPES 1\n10\n") ==
           ":14: a cell names point 8, which the file does not have");
-    CHECK(refusal("a.vtk", head + "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n77\n") == ":14: cells of VTK's type 77 are not known");
+    CHECK(refusal("a.vtk", head + "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n77\n") ==
+          ":14: cells of VTK's type 77 are not known");
     CHECK(refusal("a.vtk", head) == ": has no section CELL_TYPES");
-    CHECK(refusal("a.vtk", "# vtk DataFile Version 3.0\nx\nBINARY\n") == ":3: expected ASCII, found BINARY; save it as text");
+    CHECK(refusal("a.vtk", "# vtk DataFile Version 3.0\nx\nBINARY\n") ==
+          ":3: expected ASCII, found BINARY; save it as text");
     CHECK(refusal("a.vtk", "<VTKFile/>\n") == ":1: expected # vtk DataFile: not a VTK legacy file");
 }
 
@@ -278,7 +285,8 @@ TEST_CASE("TetGen's two files, numbered from 0 and from 1") {
         CHECK(file_error([&] { (void)read_mesh(folder / "a.node"); }) ==
               (folder / "a.ele").string() + ":1: cells of 5 nodes in dimension 3 are not known");
         std::filesystem::remove(folder / "a.ele");
-        CHECK(file_error([&] { (void)read_mesh(folder / "a.node"); }) == (folder / "a.ele").string() + ": no such file");
+        CHECK(file_error([&] { (void)read_mesh(folder / "a.node"); }) ==
+              (folder / "a.ele").string() + ": no such file");
     }
 }
 
@@ -300,7 +308,8 @@ TEST_CASE("cells that all go the other way round are turned, single ones are not
     std::string vtk = text("# vtk DataFile Version 2.0\n\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS ",
                            quadratic_mesh.n_nodes(), " float\n");
     for (Index i = 0; i < quadratic_mesh.n_nodes(); ++i) {
-        vtk += text(-quadratic_mesh.nodes(0, i), ' ', quadratic_mesh.nodes(1, i), ' ', quadratic_mesh.nodes(2, i), '\n');
+        vtk +=
+            text(-quadratic_mesh.nodes(0, i), ' ', quadratic_mesh.nodes(1, i), ' ', quadratic_mesh.nodes(2, i), '\n');
     }
     vtk += "CELLS 6 66\n";
     for (Index c = 0; c < 6; ++c) {
@@ -323,12 +332,14 @@ TEST_CASE("a surface is no volume, and space is no plane") {
                                                "Triangles 1 1 2 3 0 End");
     CHECK(surface.cell_dimension() == 2);
     CHECK_FALSE(surface.is_flat());
-    CHECK(file_error([&] { (void)(surface.as_mesh<3, double, Tet4>()); })
-              .ends_with("skin.mesh: holds a surface where a volume is needed: expected cells of kind tetrahedron only, "
-                         "found 1 cells of kind triangle"));
+    CHECK(
+        file_error([&] { (void)(surface.as_mesh<3, double, Tet4>()); })
+            .ends_with("skin.mesh: holds a surface where a volume is needed: expected cells of kind tetrahedron only, "
+                       "found 1 cells of kind triangle"));
     CHECK(file_error([&] { (void)(surface.as_mesh<2, double, Tri3>()); }).ends_with("is not flat: z from 0 to 1"));
     CHECK(surface.as_mesh<3, double, Tri3>().n_cells() == 1);
     CHECK(refusal("a.stl", "solid") == ": has no ending of a mesh: .msh, .mesh, .vtk, .node or .ele");
     const ScratchFolder folder;
-    CHECK(file_error([&] { (void)read_mesh(folder / "none.msh"); }) == (folder / "none.msh").string() + ": no such file");
+    CHECK(file_error([&] { (void)read_mesh(folder / "none.msh"); }) ==
+          (folder / "none.msh").string() + ": no such file");
 }

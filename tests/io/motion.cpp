@@ -232,7 +232,8 @@ TEST_CASE("what is missing or wrong in a motion is named by its dataset") {
     CHECK(with("/mesh/cells", std::vector<int>{0, 1, 2}, {3}) ==
           "/mesh/cells: expected [cells x corners per cell], found [3]");
     CHECK(with("/mesh/cells", std::vector<double>{0, 1, 2}, {1, 3}) == "/mesh/cells: expected whole numbers");
-    CHECK(with("/springs", std::vector<int>{0, -1}, {1, 2}) == "/springs: expected node numbers in [0, 4), found -1 in row 0");
+    CHECK(with("/springs", std::vector<int>{0, -1}, {1, 2}) ==
+          "/springs: expected node numbers in [0, 4), found -1 in row 0");
     CHECK(with("/springs", std::vector<int>{0, 1, 2}, {1, 3}) == "/springs: expected [springs x 2], found [1 x 3]");
     CHECK(with("/mesh/clamped", std::vector<int>{9}, {1}) ==
           "/mesh/clamped: expected node numbers in [0, 4), found 9 in row 0");
@@ -352,7 +353,8 @@ TEST_CASE("differences in uneven time are of second order at every frame") {
         CHECK(largest_error(400) < 0.05);
     }
     // Few frames: as many as there are; none where a derivative has no meaning.
-    const std::vector<Points<2, double>> two{Points<2, double>::Constant(2, 1, 1.), Points<2, double>::Constant(2, 1, 2.)};
+    const std::vector<Points<2, double>> two{Points<2, double>::Constant(2, 1, 1.),
+                                             Points<2, double>::Constant(2, 1, 2.)};
     CHECK(std::abs(differentiate<2, double>({0., 0.5}, two, 1)[1](0) - 2) < 1e-14);
     CHECK(differentiate<2, double>({0., 0.5}, two, 2)[0].isZero(0));
     CHECK(differentiate<2, double>({0.}, {two[0]}, 1)[0].isZero(0));

@@ -23,7 +23,8 @@ void write(const std::filesystem::path& folder, const std::string& name, const M
         positions = mesh.nodes + 2 * (positions - mesh.nodes);
     }
     io::OutputGroup outputs;
-    io::write_motion<Dim, Scalar>(outputs, folder / (name + ".h5"), motion, io::motion_topology(mesh, springs), &fitted);
+    io::write_motion<Dim, Scalar>(outputs, folder / (name + ".h5"), motion, io::motion_topology(mesh, springs),
+                                  &fitted);
 
     io::Model<Dim, Scalar> model;
     model.network = {mesh.nodes,
@@ -48,13 +49,16 @@ int main(int argc, char** argv) {
     const std::filesystem::path folder = argv[1];
     std::filesystem::remove_all(folder);
     const io::OutputFolder output(folder);
-    write<2, double, Tri3>(folder, "triangles", {Points<2, double>{{0, 1, 0, 1}, {0, 0, 1, 1.5}},
-                                                 Mesh<2, double, Tri3>::CellArray{{0, 1}, {1, 3}, {2, 2}}});
-    write<2, float, Tri3>(folder, "triangles_float", {Points<2, float>{{0, 1, 0, 1}, {0, 0, 1, 1.5F}},
-                                                      Mesh<2, float, Tri3>::CellArray{{0, 1}, {1, 3}, {2, 2}}});
+    write<2, double, Tri3>(
+        folder, "triangles",
+        {Points<2, double>{{0, 1, 0, 1}, {0, 0, 1, 1.5}}, Mesh<2, double, Tri3>::CellArray{{0, 1}, {1, 3}, {2, 2}}});
+    write<2, float, Tri3>(
+        folder, "triangles_float",
+        {Points<2, float>{{0, 1, 0, 1}, {0, 0, 1, 1.5F}}, Mesh<2, float, Tri3>::CellArray{{0, 1}, {1, 3}, {2, 2}}});
     const Points<3, double> nodes{{0, 1, 0, 0, 1}, {0, 0, 1, 0, 1}, {0, 0, 0, 1, 1}};
     write<3, double, Tet4>(folder, "tetrahedra",
                            {nodes, Mesh<3, double, Tet4>::CellArray{{0, 1}, {1, 2}, {2, 3}, {3, 4}}});
-    write<3, double, Quad4>(folder, "membrane", {nodes.leftCols(4), Mesh<3, double, Quad4>::CellArray{{0}, {1}, {3}, {2}}});
+    write<3, double, Quad4>(folder, "membrane",
+                            {nodes.leftCols(4), Mesh<3, double, Quad4>::CellArray{{0}, {1}, {3}, {2}}});
     return 0;
 }

@@ -12,9 +12,10 @@ namespace springfit::io {
 
 /// Files that appear together or not at all.
 ///
-/// Each file is first written in full under a temporary name in its own folder; `commit` flushes them all to the disk and
-/// then renames them. Until then a file of the same name stays what it was. Whatever goes wrong (full disk, unwritable
-/// folder, an exception elsewhere), no temporary is left behind, and files that were there before are there again.
+/// Each file is first written in full under a temporary name in its own folder; `commit` flushes them all to the disk
+/// and then renames them. Until then a file of the same name stays what it was. Whatever goes wrong (full disk,
+/// unwritable folder, an exception elsewhere), no temporary is left behind, and files that were there before are there
+/// again.
 ///
 ///     OutputGroup outputs;
 ///     write_model(outputs, folder / "model.json", model);

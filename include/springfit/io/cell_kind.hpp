@@ -11,18 +11,11 @@
 namespace springfit::io {
 
 /// The kinds of cell that files can hold, known at run time only.
-enum class CellKind {
-    triangle,
-    quadratic_triangle,
-    quadrilateral,
-    tetrahedron,
-    quadratic_tetrahedron,
-    hexahedron
-};
+enum class CellKind { triangle, quadratic_triangle, quadrilateral, tetrahedron, quadratic_tetrahedron, hexahedron };
 
-inline constexpr std::array<CellKind, 6> cell_kinds{CellKind::triangle,    CellKind::quadratic_triangle,
-                                                    CellKind::quadrilateral, CellKind::tetrahedron,
-                                                    CellKind::quadratic_tetrahedron, CellKind::hexahedron};
+inline constexpr std::array<CellKind, 6> cell_kinds{
+    CellKind::triangle,    CellKind::quadratic_triangle,    CellKind::quadrilateral,
+    CellKind::tetrahedron, CellKind::quadratic_tetrahedron, CellKind::hexahedron};
 
 /// Calls `call(Cell{})` with the cell type of a kind and returns what it returns.
 template <class Call>

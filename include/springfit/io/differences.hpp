@@ -34,11 +34,11 @@ namespace detail {
 /// Derivatives in time of frames at increasing, not necessarily even times, by differences that are exact for
 /// polynomials of degree order + 1: second-order accurate at every frame, the ends included.
 ///
-/// `order` is 1 or 2. Uses the order + 2 frames nearest to each frame, or all where there are fewer; with no more frames
-/// than `order` the derivative is zero. O(frames x nodes).
+/// `order` is 1 or 2. Uses the order + 2 frames nearest to each frame, or all where there are fewer; with no more
+/// frames than `order` the derivative is zero. O(frames x nodes).
 template <int Dim, std::floating_point Scalar>
-[[nodiscard]] std::vector<Points<Dim, Scalar>> differentiate(const std::vector<Scalar>& times,
-                                                             const std::vector<Points<Dim, Scalar>>& frames, int order) {
+[[nodiscard]] std::vector<Points<Dim, Scalar>>
+differentiate(const std::vector<Scalar>& times, const std::vector<Points<Dim, Scalar>>& frames, int order) {
     require(order == 1 || order == 2, "order", "1 or 2", order);
     require(times.size() == frames.size(), "times", text(frames.size(), " values, one per frame"), times.size());
     const std::vector<double> t(times.begin(), times.end());

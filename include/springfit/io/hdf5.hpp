@@ -49,12 +49,13 @@ private:
 
 /// Room on the disk for a file that is being written.
 ///
-/// HDF5 1.10 cannot stand a failed write: the program crashes when it ends. So room is made, or found missing, before HDF5
-/// writes; what it keeps in memory always has its place already.
+/// HDF5 1.10 cannot stand a failed write: the program crashes when it ends. So room is made, or found missing, before
+/// HDF5 writes; what it keeps in memory always has its place already.
 class Room {
 public:
     Room(const std::filesystem::path& path, std::string shown);
-    /// Makes room for `bytes` more than HDF5 has given out so far in the file of `object`. Throws FileError on a full disk.
+    /// Makes room for `bytes` more than HDF5 has given out so far in the file of `object`. Throws FileError on a full
+    /// disk.
     void make(hid_t object, hsize_t bytes);
     /// Gives back what was not used of a file that HDF5 has closed.
     void trim(hsize_t size);

@@ -17,8 +17,8 @@ using Json = nlohmann::ordered_json;
 /// The whole of a file as JSON. Throws FileError with the line where it is none, and for a file that cannot be read.
 [[nodiscard]] Json read_json(const std::filesystem::path& path);
 
-/// Text with one line per member of an object, and arrays of numbers, however long, on one line. Numbers are the shortest
-/// that read back as the same double.
+/// Text with one line per member of an object, and arrays of numbers, however long, on one line. Numbers are the
+/// shortest that read back as the same double.
 [[nodiscard]] std::string json_text(const Json& value);
 
 /// A place inside a JSON file: every question that it cannot answer is a FileError that names file and JSON pointer,

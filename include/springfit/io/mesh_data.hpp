@@ -29,9 +29,9 @@ struct MeshFile {
         return size(2) <= 1e-9 * size.maxCoeff();
     }
 
-    /// The mesh, where all its cells are of this type. Points that no cell uses are dropped, the others keep their order.
-    /// Throws FileError for other or mixed cells, for a surface where a volume is needed, and in the plane for points
-    /// that do not have the same z.
+    /// The mesh, where all its cells are of this type. Points that no cell uses are dropped, the others keep their
+    /// order. Throws FileError for other or mixed cells, for a surface where a volume is needed, and in the plane for
+    /// points that do not have the same z.
     template <int Dim, std::floating_point Scalar, CellType Cell>
     [[nodiscard]] Mesh<Dim, Scalar, Cell> as_mesh() const;
 };
@@ -52,8 +52,9 @@ template <int Dim, std::floating_point Scalar, CellType Cell>
 Mesh<Dim, Scalar, Cell> MeshFile::as_mesh() const {
     if (blocks.size() != 1 || blocks.front().kind != cell_kind<Cell>()) {
         const bool surface = cell_dimension() < Cell::dimension;
-        throw FileError(file, text(surface ? "holds a surface where a volume is needed: " : "", "expected cells of kind ",
-                                   Cell::name, " only, found ", detail::kinds_in_words(blocks)));
+        throw FileError(file,
+                        text(surface ? "holds a surface where a volume is needed: " : "", "expected cells of kind ",
+                             Cell::name, " only, found ", detail::kinds_in_words(blocks)));
     }
     const Eigen::MatrixXi& cells = blocks.front().cells;
     std::vector<int> new_number(static_cast<std::size_t>(points.cols()), -1);

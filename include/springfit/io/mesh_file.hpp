@@ -17,8 +17,8 @@ namespace springfit::io {
 /// | .node and .ele | TetGen (3D) and Triangle (2D), numbered from 0 or 1; either file may be named; corners only    |
 ///
 /// Node numbers need not be contiguous or sorted; points, lines and faces beside solid cells are left out, with a note.
-/// Cells that are all numbered the other way round (a convention, not a fault) are turned, with a note. Throws FileError
-/// naming file and line.
+/// Cells that are all numbered the other way round (a convention, not a fault) are turned, with a note. Throws
+/// FileError naming file and line.
 [[nodiscard]] MeshFile read_mesh(const std::filesystem::path& path);
 
 } // namespace springfit::io

@@ -41,7 +41,7 @@ void write_model(const std::filesystem::path& path, const Model<Dim, Scalar>& mo
 [[nodiscard]] int model_dimension(const Json& json, const std::string& file);
 
 /// The model that `read_json` returned, every value checked; `file` is named in errors. Throws FileError with the JSON
-/// pointer of what is missing or wrong: `model.json: /springs/stiffness: expected 5 numbers, one per spring, found ...`.
+/// pointer of what is missing or wrong: `model.json: /springs/stiffness/3: expected a number, found null`.
 template <int Dim, std::floating_point Scalar>
 [[nodiscard]] Model<Dim, Scalar> model_from_json(const Json& json, const std::string& file);
 

@@ -84,8 +84,8 @@ struct RecordedMotion {
     MotionTopology topology;
     /// Of "velocity" and "acceleration", those that the file lacks and that were differenced in time.
     std::vector<std::string> differenced;
-    bool forces_recorded = false;   ///< false: the file has no forces, and they were taken as zero
-    bool clamped_recorded = false;  ///< false: the file does not say which nodes are clamped, and none is taken to be
+    bool forces_recorded = false;  ///< false: the file has no forces, and they were taken as zero
+    bool clamped_recorded = false; ///< false: the file does not say which nodes are clamped, and none is taken to be
 };
 
 /// The dimension, 2 or 3, of the motion in a `.h5` or `.xdmf` file. Throws FileError.

@@ -28,12 +28,12 @@ struct Report {
     std::string method; ///< of the model that was returned
     Index nodes = 0;
     Index springs = 0;
-    double seconds = 0;               ///< in all, s
-    NamedNumbers stage_seconds;       ///< per stage, s
-    MotionErrors held_out;            ///< on load cases that no fit has seen
-    MotionErrors training;            ///< on those that were fitted to
+    double seconds = 0;         ///< in all, s
+    NamedNumbers stage_seconds; ///< per stage, s
+    MotionErrors held_out;      ///< on load cases that no fit has seen
+    MotionErrors training;      ///< on those that were fitted to
     std::vector<std::string> warnings;
-    Json detail = Json::object(); ///< what else the program tells: options, seed, active bounds, springs not identified, ...
+    Json detail = Json::object(); ///< what else the program tells: options, seed, active bounds, ...
 };
 
 namespace detail {

@@ -16,12 +16,15 @@ namespace springfit::io {
 
 namespace detail {
 
-[[nodiscard]] inline std::string reason(int error) { return std::generic_category().message(error); }
+[[nodiscard]] inline std::string reason(int error) {
+    return std::generic_category().message(error);
+}
 
 /// An open POSIX file that is closed on every way out.
 class Descriptor {
 public:
-    Descriptor(const std::filesystem::path& path, int flags) : m_descriptor(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {}
+    Descriptor(const std::filesystem::path& path, int flags)
+        : m_descriptor(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {}
     Descriptor(const Descriptor&) = delete;
     Descriptor& operator=(const Descriptor&) = delete;
     ~Descriptor() {

@@ -50,6 +50,8 @@ public:
             if (section == "$Nodes") {
                 m_version == 2 ? read_nodes_2() : read_nodes_4();
                 nodes = true;
+            } else if (section == "$ParametricNodes") {
+                m_scanner.refuse("$ParametricNodes; save the mesh without parametric coordinates");
             } else if (section == "$Elements") {
                 if (!nodes) {
                     m_scanner.refuse("$Elements before $Nodes");

@@ -193,7 +193,7 @@ inline Handle File::open_dataset(const std::string& dataset) const {
 }
 
 inline Handle File::create_dataset(const std::string& dataset, hid_t type, hid_t space, hid_t properties,
-                                    hid_t access) const {
+                                   hid_t access) const {
     const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
     H5Pset_create_intermediate_group(links.get(), 1);
     Handle handle(H5Dcreate2(m_file.get(), dataset.c_str(), type, space, links.get(), properties, access), H5Dclose);
@@ -203,7 +203,9 @@ inline Handle File::create_dataset(const std::string& dataset, hid_t type, hid_t
     return handle;
 }
 
-inline Shape File::shape(const std::string& dataset) const { return detail::shape_of(open_dataset(dataset)); }
+inline Shape File::shape(const std::string& dataset) const {
+    return detail::shape_of(open_dataset(dataset));
+}
 
 template <class T>
 void File::write(const std::string& dataset, const T* values, const Shape& shape) {
@@ -285,8 +287,8 @@ inline void File::write_attribute(const std::string& object, const std::string& 
     H5Tset_size(type.get(), H5T_VARIABLE);
     H5Tset_cset(type.get(), H5T_CSET_UTF8);
     const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-    Handle handle(H5Acreate_by_name(m_file.get(), object.c_str(), attribute.c_str(), type.get(), space.get(), H5P_DEFAULT,
-                                    H5P_DEFAULT, H5P_DEFAULT),
+    Handle handle(H5Acreate_by_name(m_file.get(), object.c_str(), attribute.c_str(), type.get(), space.get(),
+                                    H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                   H5Aclose);
     const char* content = value.c_str();
     if (!handle.is_open() || H5Awrite(handle.get(), type.get(), &content) < 0 || !handle.close()) {
@@ -376,9 +378,10 @@ void Series::append(const T* values) {
     if (written) {
         const Handle in_file(H5Dget_space(m_dataset.get()), H5Sclose);
         const Handle in_memory = detail::simple_space(count, count);
-        written = H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) >= 0 &&
-                  H5Dwrite(m_dataset.get(), detail::memory_type<T>(), in_memory.get(), in_file.get(), H5P_DEFAULT,
-                           values) >= 0;
+        written =
+            H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) >= 0 &&
+            H5Dwrite(m_dataset.get(), detail::memory_type<T>(), in_memory.get(), in_file.get(), H5P_DEFAULT, values) >=
+                0;
     }
     if (!written) {
         throw FileError(m_file, text(m_name, ": cannot be written: ", detail::last_error()));

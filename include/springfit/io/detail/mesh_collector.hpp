@@ -129,7 +129,8 @@ inline MeshFile MeshCollector::finish() && {
         highest = std::max(highest, block.type->dimension);
     }
     if (highest < 2) {
-        throw FileError(m_scanner->file(), m_points.empty() ? "holds no points" : "holds no cells but points and lines");
+        throw FileError(m_scanner->file(),
+                        m_points.empty() ? "holds no points" : "holds no cells but points and lines");
     }
     MeshFile mesh;
     mesh.file = m_scanner->file();

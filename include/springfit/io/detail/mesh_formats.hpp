@@ -40,7 +40,8 @@ inline constexpr std::array<FileCell, 7> medit_cells{{
             break;
         }
         (void)scanner.word("a section");
-        const auto cells = std::find_if(sections.begin(), sections.end(), [&](const auto& s) { return s.first == section; });
+        const auto cells =
+            std::find_if(sections.begin(), sections.end(), [&](const auto& s) { return s.first == section; });
         if (section == "Dimension") {
             dimension = scanner.count("the dimension");
             if (dimension != 2 && dimension != 3) {
@@ -120,7 +121,8 @@ struct VtkCells {
     cells.offsets.clear();
     for (long long c = 0; c < n; ++c) {
         cells.offsets.push_back(scanner.count("an offset"));
-        if (cells.offsets.back() > size || (c > 0 && cells.offsets.back() < cells.offsets[static_cast<std::size_t>(c - 1)])) {
+        if (cells.offsets.back() > size ||
+            (c > 0 && cells.offsets.back() < cells.offsets[static_cast<std::size_t>(c - 1)])) {
             scanner.refuse(text("expected offsets that ascend to ", size, ", found ", cells.offsets.back()));
         }
     }
@@ -182,8 +184,9 @@ struct VtkCells {
                 if (n_nodes != type->n_nodes) {
                     scanner.refuse(text("cell ", c, ", one of the ", type->plural, ", has ", n_nodes, " nodes"));
                 }
-                collector.add_cell(*type, std::span(cells.nodes).subspan(static_cast<std::size_t>(cells.offsets[c]),
-                                                                         static_cast<std::size_t>(n_nodes)));
+                collector.add_cell(
+                    *type, std::span(cells.nodes)
+                               .subspan(static_cast<std::size_t>(cells.offsets[c]), static_cast<std::size_t>(n_nodes)));
             }
             return std::move(collector).finish();
         } else {

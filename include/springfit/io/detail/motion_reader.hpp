@@ -50,7 +50,8 @@ struct MotionSource {
 }
 
 /// Whole numbers [rows x columns], each the number of a node.
-[[nodiscard]] inline Eigen::MatrixXi read_node_numbers(const hdf5::File& file, const std::string& dataset, Index n_nodes) {
+[[nodiscard]] inline Eigen::MatrixXi read_node_numbers(const hdf5::File& file, const std::string& dataset,
+                                                       Index n_nodes) {
     const hdf5::Shape shape = file.shape(dataset);
     const auto columns = static_cast<Index>(shape.size() > 1 ? shape[1] : 1);
     Eigen::MatrixXi numbers(columns, static_cast<Index>(shape[0]));
@@ -58,7 +59,8 @@ struct MotionSource {
     for (Index c = 0; c < numbers.cols(); ++c) {
         for (Index r = 0; r < numbers.rows(); ++r) {
             if (!(numbers(r, c) >= 0 && numbers(r, c) < n_nodes)) {
-                file.refuse(dataset, text("expected node numbers in [0, ", n_nodes, "), found ", numbers(r, c), " in row ", c));
+                file.refuse(dataset,
+                            text("expected node numbers in [0, ", n_nodes, "), found ", numbers(r, c), " in row ", c));
             }
         }
     }
@@ -123,7 +125,8 @@ template <std::floating_point Scalar>
             file.refuse("/time", text("expected finite values, found ", times[t], " in frame ", t));
         }
         if (t > 0 && !(times[t] > times[t - 1])) {
-            file.refuse("/time", text("expected increasing values, found ", times[t], " after ", times[t - 1], " in frame ", t));
+            file.refuse("/time",
+                        text("expected increasing values, found ", times[t], " after ", times[t - 1], " in frame ", t));
         }
     }
     return times;
@@ -142,7 +145,8 @@ template <int Dim, std::floating_point Scalar>
         file.read_row(dataset, t, frames[t].data());
         for (Index i = 0; i < n_nodes; ++i) {
             if (!frames[t].col(i).allFinite()) {
-                file.refuse(dataset, text("expected finite values, found one that is not at node ", i, " in frame ", t));
+                file.refuse(dataset,
+                            text("expected finite values, found one that is not at node ", i, " in frame ", t));
             }
         }
     }

@@ -52,8 +52,9 @@ MotionWriter<Dim, Scalar>::MotionWriter(OutputGroup& outputs, const std::filesys
             text(m_n_cells, " cells"));
     detail::check_node_numbers(topology.cells, n_nodes, "cells");
     detail::check_node_numbers(topology.springs, n_nodes, "springs");
-    detail::check_node_numbers(Eigen::Map<const Eigen::VectorXi>(body.clamped.data(), static_cast<Index>(body.clamped.size())),
-                               n_nodes, "clamped");
+    detail::check_node_numbers(
+        Eigen::Map<const Eigen::VectorXi>(body.clamped.data(), static_cast<Index>(body.clamped.size())), n_nodes,
+        "clamped");
 
     m_file.write_attribute("/", "format", std::string(detail::motion_format));
     m_file.write_attribute("/", "version", "1");
@@ -88,7 +89,8 @@ void MotionWriter<Dim, Scalar>::start_columns(const MotionFrame<Dim, Scalar>& fr
 template <int Dim, std::floating_point Scalar>
 void MotionWriter<Dim, Scalar>::append(const MotionFrame<Dim, Scalar>& frame) {
     const auto time = static_cast<double>(frame.time);
-    require(std::isfinite(time) && (m_times.empty() || time > m_times.back()), "time", "finite, increasing values", time);
+    require(std::isfinite(time) && (m_times.empty() || time > m_times.back()), "time", "finite, increasing values",
+            time);
     if (m_times.empty()) {
         start_columns(frame);
     }
@@ -120,8 +122,8 @@ void MotionWriter<Dim, Scalar>::append(const MotionFrame<Dim, Scalar>& frame) {
 template <int Dim, std::floating_point Scalar>
 void MotionWriter<Dim, Scalar>::finish() {
     require(!m_times.empty(), "motion", "at least one frame", "none");
-    detail::XdmfMotion xdmf{m_h5.filename().string(), Dim,     m_rest_positions.cols(), m_kind, m_n_cells,
-                            m_n_springs,              m_times, {}};
+    detail::XdmfMotion xdmf{
+        m_h5.filename().string(), Dim, m_rest_positions.cols(), m_kind, m_n_cells, m_n_springs, m_times, {}};
     for (hdf5::Series& column : m_columns) {
         if (column.dataset() != "/time") {
             xdmf.vectors.push_back(column.dataset());
@@ -146,8 +148,9 @@ void write_motion(OutputGroup& outputs, const std::filesystem::path& h5, const M
             text(reference.times.size(), " frames"), fitted_positions == nullptr ? 0 : fitted_positions->size());
     MotionWriter<Dim, Scalar> writer(outputs, h5, reference, topology);
     for (std::size_t t = 0; t < reference.times.size(); ++t) {
-        writer.append({reference.times[t], &reference.positions[t], &reference.velocities[t], &reference.accelerations[t],
-                       &reference.external_forces[t], fitted_positions == nullptr ? nullptr : &(*fitted_positions)[t]});
+        writer.append({reference.times[t], &reference.positions[t], &reference.velocities[t],
+                       &reference.accelerations[t], &reference.external_forces[t],
+                       fitted_positions == nullptr ? nullptr : &(*fitted_positions)[t]});
     }
     writer.finish();
 }

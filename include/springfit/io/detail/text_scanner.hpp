@@ -62,7 +62,8 @@ public:
 
     [[nodiscard]] bool next_is_number() {
         const std::string_view found = peek();
-        return !found.empty() && (found[0] == '-' || found[0] == '+' || found[0] == '.' || (found[0] >= '0' && found[0] <= '9'));
+        return !found.empty() &&
+               (found[0] == '-' || found[0] == '+' || found[0] == '.' || (found[0] >= '0' && found[0] <= '9'));
     }
 
     void skip_line() {

@@ -20,7 +20,8 @@ inline constexpr std::array<std::pair<char, std::string_view>, 5> xml_entities{
 [[nodiscard]] inline std::string xml_escaped(std::string_view plain) {
     std::string result;
     for (const char c : plain) {
-        const auto* entity = std::find_if(xml_entities.begin(), xml_entities.end(), [c](const auto& e) { return e.first == c; });
+        const auto* entity =
+            std::find_if(xml_entities.begin(), xml_entities.end(), [c](const auto& e) { return e.first == c; });
         entity == xml_entities.end() ? result += c : result += entity->second;
     }
     return result;
@@ -64,7 +65,7 @@ inline constexpr std::array<std::pair<char, std::string_view>, 5> xml_entities{
 
 /// What the XDMF file of a motion tells about its HDF5 file.
 struct XdmfMotion {
-    std::string h5_name;  ///< relative to the XDMF file
+    std::string h5_name; ///< relative to the XDMF file
     int dimension;
     Index n_nodes;
     std::optional<CellKind> kind;
@@ -78,7 +79,8 @@ struct XdmfMotion {
 [[nodiscard]] inline std::string xdmf_text(const XdmfMotion& motion) {
     const std::string h5 = xml_escaped(motion.h5_name);
     const auto item = [&](std::string_view dataset, const std::string& dimensions, std::string_view number) {
-        return text("<DataItem Format=\"HDF\" ", number, " Dimensions=\"", dimensions, "\">", h5, ":", dataset, "</DataItem>");
+        return text("<DataItem Format=\"HDF\" ", number, " Dimensions=\"", dimensions, "\">", h5, ":", dataset,
+                    "</DataItem>");
     };
     constexpr std::string_view float64 = "NumberType=\"Float\" Precision=\"8\"";
     constexpr std::string_view int32 = "NumberType=\"Int\" Precision=\"4\"";
@@ -90,11 +92,12 @@ struct XdmfMotion {
     const auto append_grid = [&](std::string_view name, const std::string& topology) {
         result += text("<Grid Name=\"", name, "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
         for (std::size_t t = 0; t < motion.times.size(); ++t) {
-            result += text("<Grid Name=\"", name, "\" GridType=\"Uniform\">\n<Time Value=\"", Json(motion.times[t]).dump(),
-                           "\"/>\n", topology, geometry);
+            result += text("<Grid Name=\"", name, "\" GridType=\"Uniform\">\n<Time Value=\"",
+                           Json(motion.times[t]).dump(), "\"/>\n", topology, geometry);
             for (const std::string& dataset : motion.vectors) {
-                result += text("<Attribute Name=\"", attribute_name(dataset), "\" AttributeType=\"Vector\" Center=\"Node\">",
-                               item(frame_view(dataset, t), text(motion.n_nodes, " 3"), float64), "</Attribute>\n");
+                result +=
+                    text("<Attribute Name=\"", attribute_name(dataset), "\" AttributeType=\"Vector\" Center=\"Node\">",
+                         item(frame_view(dataset, t), text(motion.n_nodes, " 3"), float64), "</Attribute>\n");
             }
             result += "</Grid>\n";
         }
@@ -147,12 +150,14 @@ struct XdmfTarget {
         for (const std::string& candidate : candidates) {
             names += (names.empty() ? ": " : ", ") + candidate;
         }
-        throw FileError(path.string(), candidates.empty() ? "points to no HDF5 file"
-                                                          : text("points to ", candidates.size(), " HDF5 files", names));
+        throw FileError(path.string(), candidates.empty()
+                                           ? "points to no HDF5 file"
+                                           : text("points to ", candidates.size(), " HDF5 files", names));
     }
     XdmfTarget target{path.parent_path() / *candidates.begin(), std::nullopt};
     for (const CellKind kind : cell_kinds) {
-        if (n_corners(kind) == n_nodes(kind) && content.find(text("Type=\"", xdmf_topology(kind), '"')) != std::string::npos) {
+        if (n_corners(kind) == n_nodes(kind) &&
+            content.find(text("Type=\"", xdmf_topology(kind), '"')) != std::string::npos) {
             target.kind = kind;
         }
     }
