@@ -107,6 +107,24 @@ TEST_CASE("sharp edges are kept by their angle, short ones dropped as noise") {
     CHECK(edges.lines().empty());
 }
 
+TEST_CASE("flakes on the surface and crumbs beside the body are taken off") {
+    Mesh<3, double, Tet4> mesh; // a tetrahedron, a flat one on its face (0, 1, 2), a small one at its edge (0, 3)
+    mesh.nodes.resize(3, 8);
+    mesh.nodes.transpose() << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0.4, 0.4, -0.001, -0.1, 0, 0, 0, -0.1, 0, 9, 9, 9;
+    mesh.cells.resize(4, 3);
+    mesh.cells << 0, 0, 0, 1, 2, 5, 2, 1, 6, 3, 4, 3;
+    CHECK(cgal::detail::n_pieces(mesh) == 2);
+    const auto body = cgal::detail::without_flakes(mesh, 2);
+    CHECK(body.n_cells() == 2);
+    CHECK(body.n_nodes() == 6);
+    CHECK(cgal::detail::without_flakes(mesh, 0.01).n_cells() == 3);
+    CHECK(cgal::detail::without_crumbs(body, 0.005).n_cells() == 2);
+    const auto whole = cgal::detail::without_crumbs(body, 0.02);
+    CHECK(whole.n_cells() == 1);
+    CHECK(whole.nodes == Points<3, double>(mesh.nodes.leftCols(4)));
+    CHECK(relative(volume(whole), 1. / 6, 1. / 6) < 1e-15);
+}
+
 TEST_CASE("what cannot be meshed is refused with what is wrong") {
     const auto surface = test::box(1, 1, 1);
     using Options = cgal::TetrahedralizeOptions;

@@ -108,8 +108,10 @@ template <int Dim, std::floating_point Scalar, CellType Cell>
             add(target, mesh.cells.col(inside->cell), inside->weights);
         } else {
             const auto place = locator.nearest(point);
-            require(place.distance <= farthest, "points", text("points at most ", farthest, " m from the mesh"),
-                    text("point ", target, " at ", place.distance, " m"));
+            if (!(place.distance <= farthest)) {
+                throw InvalidArgument("points", text("points at most ", farthest, " m from the mesh"),
+                                      text("point ", target, " at ", place.distance, " m"));
+            }
             add(target, place.nodes, place.weights);
         }
     }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <springfit/cgal/detail/clean_solid.hpp>
 #include <springfit/cgal/detail/mesh_3.hpp>
-#include <springfit/cgal/detail/pieces.hpp>
 #include <springfit/cgal/detail/size_search.hpp>
 #include <springfit/cgal/surface.hpp>
 #include <springfit/core/progress.hpp>
@@ -16,13 +16,18 @@ struct TetrahedralizeOptions {
     double sharp_edge_angle = 60; ///< edges whose faces' normals differ by more are kept, degrees, in (0, 180]
     double surface_distance = 0;  ///< farthest that the mesh's surface lies from the given one, m, >= 0; 0: cell_size / 5
     double sliver_angle = 12;     ///< dihedral angles below this are removed as far as possible, degrees, >= 0; 0: none
-    bool several_pieces = false;  ///< accept a mesh of several pieces that no face joins
+    bool several_pieces = false;  ///< accept a mesh of several pieces that no face joins; if not, crumbs are left out
     unsigned seed = 0;            ///< of the mesher's random numbers; the same seed gives the same mesh
     RepairOptions repair{};       ///< of the surface, before it is meshed
     ProgressCallback progress{};  ///< called after each meshing; returning false takes the best mesh so far as it is
 };
 
 namespace detail {
+
+/// Flatter cells that lie on the surface are taken off, degrees.
+inline constexpr double flake_angle = 2;
+/// Pieces that hold less than this share of the volume are taken off, where one piece is wanted.
+inline constexpr double crumb_share = 0.01;
 
 inline void check(const TetrahedralizeOptions& options) {
     const bool by_size = options.cell_size != 0;
@@ -46,7 +51,9 @@ void check_result(const Mesh<3, Scalar, Tet4>& mesh, const TetrahedralizeOptions
     for (Index c = 0; c < mesh.n_cells(); ++c) {
         const auto x = mesh.cell_nodes(c);
         const Scalar volume = (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0)).dot(x.col(3) - x.col(0)) / 6;
-        require(volume > 0, size, "tetrahedra of positive volume", text("volume ", volume, " in cell ", c));
+        if (!(volume > 0)) {
+            throw InvalidArgument(size, "tetrahedra of positive volume", text("volume ", volume, " in cell ", c));
+        }
     }
     if (!options.several_pieces) {
         const Index pieces = n_pieces(mesh);
@@ -55,10 +62,9 @@ void check_result(const Mesh<3, Scalar, Tet4>& mesh, const TetrahedralizeOptions
     }
 }
 
-template <std::floating_point Scalar>
-[[nodiscard]] Mesh<3, Scalar, Tet4> tetrahedralize(const TriangleSurface& surface, const TetrahedralizeOptions& options,
-                                                   std::string_view name) {
-    const double volume = require_solid(surface, name).volume;
+/// Meshes at the wanted size, or at sizes that approach the wanted number of nodes, and removes slivers.
+[[nodiscard]] inline Mesh<3, double, Tet4> refined_solid(const TriangleSurface& surface, double volume,
+                                                         const TetrahedralizeOptions& options) {
     const double area = CGAL::Polygon_mesh_processing::area(surface);
     SolidMesher mesher(surface, options.sharp_edge_angle, options.seed);
     bool interrupted = false;
@@ -81,7 +87,23 @@ template <std::floating_point Scalar>
         mesher.remove_slivers(complex, options.sliver_angle);
     }
     (void)go_on(options.progress, "mesh", 1);
-    auto mesh = to_mesh<Scalar>(complex);
+    return to_mesh(complex);
+}
+
+template <std::floating_point Scalar>
+[[nodiscard]] Mesh<3, Scalar, Tet4> tetrahedralize(const TriangleSurface& surface, const TetrahedralizeOptions& options,
+                                                   std::string_view name) {
+    const double volume = require_solid(surface, name).volume;
+    Mesh<3, double, Tet4> solid;
+    try {
+        solid = without_flakes(refined_solid(surface, volume, options), flake_angle);
+    } catch (const CGAL::Failure_exception& failure) {
+        throw InvalidArgument(name, "a surface that CGAL's mesher can follow", failure.message());
+    }
+    if (!options.several_pieces) {
+        solid = without_crumbs(solid, crumb_share);
+    }
+    Mesh<3, Scalar, Tet4> mesh{solid.nodes.cast<Scalar>(), solid.cells};
     check_result(mesh, options);
     return mesh;
 }
@@ -92,7 +114,8 @@ template <std::floating_point Scalar>
 ///
 /// The same input gives the same mesh. Throws InvalidArgument for an option out of range, for a surface that does not bound
 /// a solid (open, self-intersecting, without volume: what is wrong and how many), where no tetrahedron fits, and where the
-/// mesh falls into pieces. O(n_nodes log n_nodes) per meshing, of which a wanted `n_nodes` takes two or three as a rule.
+/// mesh falls into pieces (those below 1 % of the volume are left out). O(n_nodes log n_nodes) per meshing, of which a
+/// wanted `n_nodes` takes two or three as a rule.
 template <std::floating_point Scalar>
 [[nodiscard]] Mesh<3, Scalar, Tet4> tetrahedralize(const Surface& surface, const TetrahedralizeOptions& options) {
     detail::check(options);

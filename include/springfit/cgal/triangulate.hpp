@@ -42,8 +42,10 @@ struct TriangulateOptions {
         std::array<int, 2> ends{};
         for (const int e : {0, 1}) {
             const int i = outline.segments(e, s);
-            require(i >= 0 && i < outline.points.cols(), name, text("point numbers in [0, ", outline.points.cols(), ")"),
-                    text(i, " in segment ", s));
+            if (!(i >= 0 && i < outline.points.cols())) {
+                throw InvalidArgument(name, text("point numbers in [0, ", outline.points.cols(), ")"),
+                                      text(i, " in segment ", s));
+            }
             ends[static_cast<std::size_t>(e)] =
                 number.insert({{outline.points(0, i), outline.points(1, i)}, static_cast<int>(number.size())}).first->second;
         }

@@ -28,7 +28,9 @@ void validate(const Interpolation<Scalar>& interpolation, std::string_view name)
     const Scalar tolerance = 1000 * std::numeric_limits<Scalar>::epsilon();
     for (Index target = 0; target < interpolation.n_targets(); ++target) {
         const Scalar sum = interpolation.weights.col(target).sum();
-        require(std::abs(sum - 1) <= tolerance, name, "weights that sum to 1", text(sum, " at target ", target));
+        if (!(std::abs(sum - 1) <= tolerance)) {
+            throw InvalidArgument(name, "weights that sum to 1", text(sum, " at target ", target));
+        }
     }
 }
 
@@ -61,7 +63,9 @@ template <std::floating_point Scalar>
             at_targets.size());
     const Values<Scalar> masses = interpolation.weights * at_targets;
     for (Index i = 0; i < masses.size(); ++i) {
-        require(masses(i) > 0, "masses", "a share of the mass for every node", text(masses(i), " kg at node ", i));
+        if (!(masses(i) > 0)) {
+            throw InvalidArgument("masses", "a share of the mass for every node", text(masses(i), " kg at node ", i));
+        }
     }
     return masses;
 }

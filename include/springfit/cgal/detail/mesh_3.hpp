@@ -39,7 +39,7 @@ public:
         const CGAL::Mesh_criteria_3<Triangulation> criteria(
             p::edge_size = size, p::facet_angle = 25, p::facet_size = circumradius * size, p::facet_distance = distance,
             p::cell_radius_edge_ratio = 2, p::cell_size = circumradius * size);
-        return CGAL::make_mesh_3<Complex>(*m_domain, criteria, p::no_perturb(), p::no_exude(), p::manifold());
+        return CGAL::make_mesh_3<Complex>(*m_domain, criteria, p::no_perturb(), p::no_exude());
     }
 
     /// Moves nodes, then weighs them, so that as few dihedral angles as can be had are below `angle` (degrees).
@@ -90,11 +90,10 @@ inline Index count_nodes(const SolidMesher::Complex& complex) {
 }
 
 /// The cells of a complex with their nodes numbered as the cells come.
-template <std::floating_point Scalar>
-[[nodiscard]] Mesh<3, Scalar, Tet4> to_mesh(const SolidMesher::Complex& complex) {
+[[nodiscard]] inline Mesh<3, double, Tet4> to_mesh(const SolidMesher::Complex& complex) {
     std::unordered_map<const void*, int> number;
     std::vector<Kernel::Point_3> points;
-    Mesh<3, Scalar, Tet4> mesh;
+    Mesh<3, double, Tet4> mesh;
     mesh.cells.resize(4, static_cast<Index>(complex.number_of_cells_in_complex()));
     const auto bare = complex.triangulation().geom_traits().construct_point_3_object();
     Index column = 0;
@@ -110,8 +109,7 @@ template <std::floating_point Scalar>
     }
     mesh.nodes.resize(3, static_cast<Index>(points.size()));
     for (std::size_t i = 0; i < points.size(); ++i) {
-        mesh.nodes.col(static_cast<Index>(i)) << static_cast<Scalar>(points[i].x()), static_cast<Scalar>(points[i].y()),
-            static_cast<Scalar>(points[i].z());
+        mesh.nodes.col(static_cast<Index>(i)) << points[i].x(), points[i].y(), points[i].z();
     }
     return mesh;
 }

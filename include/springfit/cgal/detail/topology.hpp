@@ -25,8 +25,10 @@ Topology<Cell>::Topology(const Mesh<Dim, Scalar, Cell>& mesh) {
         add_cell(mesh.cells.col(c), static_cast<int>(c));
     }
     springfit::detail::for_shared_facets(mesh, [&](const std::vector<Facet<Cell>>& shared) {
-        require(shared.size() <= 2, "mesh", "facets shared by at most two cells",
-                text(shared.size(), " cells at a facet of cell ", shared[0].cell));
+        if (shared.size() > 2) {
+            throw InvalidArgument("mesh", "facets shared by at most two cells",
+                                  text(shared.size(), " cells at a facet of cell ", shared[0].cell));
+        }
         if (shared.size() == 2) {
             join(shared[0], shared[1]);
         }
@@ -87,8 +89,10 @@ void Topology<Cell>::join(const Facet<Cell>& a, const Facet<Cell>& b) {
         }
     }
     for (std::size_t i = 0; i < (Cell::dimension == 3 ? a.corners.size() : 1); ++i) {
-        require(node(p) == node(next(q)) && node(q) == node(next(p)), "mesh", "cells oriented alike",
-                text("cells ", a.cell, " and ", b.cell, " oriented against each other"));
+        if (node(p) != node(next(q)) || node(q) != node(next(p))) {
+            throw InvalidArgument("mesh", "cells oriented alike",
+                                  text("cells ", a.cell, " and ", b.cell, " oriented against each other"));
+        }
         m_map.template link_beta<Cell::dimension>(p, q);
         p = m_map.template beta<1>(p);
         q = m_map.template beta<0>(q);
