@@ -79,8 +79,8 @@ void check_rule(const Rule& rule, int degree) {
 
 } // namespace
 
-TEST_CASE_TEMPLATE("shape functions are 1 at their node and 0 at the others, add up to 1, and match their gradients", Cell,
-                   Tri3, Tri6, Quad4, Tet4, Tet10, Hex8) {
+TEST_CASE_TEMPLATE("shape functions are 1 at their node and 0 at the others, add up to 1, and match their gradients",
+                   Cell, Tri3, Tri6, Quad4, Tet4, Tet10, Hex8) {
     using Element = fem::Element<Cell>;
     for (int a = 0; a < Cell::n_nodes; ++a) {
         const auto values = Element::values(node<Cell>(a));

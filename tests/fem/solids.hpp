@@ -56,7 +56,8 @@ template <int Dim, class Cell>
     return node;
 }
 
-/// Cook's membrane, inner nodes `moved` by that part of an edge: a trapezoid (0,0), (48,44), (48,60), (0,44), clamped at the left, shear force 1 on the right.
+/// Cook's membrane: a trapezoid (0,0), (48,44), (48,60), (0,44), clamped at the left, shear force 1 on the right; inner
+/// nodes `moved` by up to that part of an edge.
 template <class Cell>
 [[nodiscard]] Mesh<2, double, Cell> cook(int n, double moved) {
     auto mesh = grid<Cell, 2>({n, n}, {1., 1.});

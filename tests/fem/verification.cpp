@@ -12,8 +12,8 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// L2 error of the displacement u_i = prod_d sin(pi x_d) of the unit square (plane strain) or cube, held at its boundary,
-/// under the body force that belongs to it.
+/// L2 error of the displacement u_i = prod_d sin(pi x_d) of the unit square (plane strain) or cube, held at its
+/// boundary, under the body force that belongs to it.
 template <class Cell>
 double manufactured_error(int n, Dilatation dilatation, double poisson) {
     constexpr int dim = Cell::dimension;

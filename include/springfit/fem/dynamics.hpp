@@ -24,8 +24,8 @@ struct DynamicsOptions {
 ///     beta = (1 - alpha)^2 / 4,  gamma = 1/2 - alpha
 ///
 /// Damping is Rayleigh's, D = alpha_m M + beta_k K(x_n): the stiffness part is the tangent at the start of the step, so
-/// that turning the unloaded body costs nothing. Each step is a minimisation by Newton's method with line search, and is
-/// halved where that fails. The states it returns carry the acceleration of the frame itself,
+/// that turning the unloaded body costs nothing. Each step is a minimisation by Newton's method with line search, and
+/// is halved where that fails. The states it returns carry the acceleration of the frame itself,
 /// M a = f_ext - f_int(x) - D v with D at the same x; A, which is a little older, stays inside.
 ///
 /// A model of the concept Stepper. Clamps may move: velocity and acceleration of clamped nodes are central differences.

@@ -127,8 +127,8 @@ template <int Dim, std::floating_point Scalar, FiniteElementCell Cell>
     return detail::nodal_load<Dim, Scalar>(forces, std::move(amplitude));
 }
 
-/// Nodal forces of a uniform pressure on one side of a whole membrane, along the normals of its cells at rest (dead), so
-/// that a sphere oriented outwards is blown up by a positive value, N/m^2.
+/// Nodal forces of a uniform pressure on one side of a whole membrane, along the normals of its cells at rest (dead),
+/// so that a sphere oriented outwards is blown up by a positive value, N/m^2.
 template <std::floating_point Scalar, FiniteElementCell Cell>
     requires(Cell::dimension == 2)
 [[nodiscard]] NodalLoad<3, Scalar> pressure(const Mesh<3, Scalar, Cell>& mesh, std::type_identity_t<Scalar> value,

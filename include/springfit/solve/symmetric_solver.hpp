@@ -10,14 +10,14 @@
 
 namespace springfit {
 
-/// Solves A x = b for a sequence of symmetric matrices of one sparsity pattern (lower triangles, with any rank-one terms
-/// kept apart).
+/// Solves A x = b for a sequence of symmetric matrices of one sparsity pattern (lower triangles, with any rank-one
+/// terms kept apart).
 ///
 /// The symbolic analysis is done once. A numeric factorisation is kept as the preconditioner of conjugate gradients for
 /// the matrices that follow, and is renewed when they take more than `max_cg_iterations`: near each other, as from one
 /// Newton or time step to the next, a few cheap iterations replace an expensive factorisation. Well conditioned
-/// matrices, as of short time steps, need none: `set_max_diagonal_iterations` tries the diagonal as preconditioner before
-/// a new factorisation.
+/// matrices, as of short time steps, need none: `set_max_diagonal_iterations` tries the diagonal as preconditioner
+/// before a new factorisation.
 ///
 /// A matrix that is not positive definite is shifted, A + s diag(|A|), until it is: the Newton direction then points
 /// downhill. (With the diagonal as preconditioner, the iterate before the negative curvature is returned instead, which

@@ -6,8 +6,8 @@
 
 namespace springfit::fem {
 
-/// The potential whose minimum is the next step. With d = x - x_predicted and v(x) = v_predicted + c1 d (at clamped nodes
-/// both predictions are the prescribed values, so that d = 0),
+/// The potential whose minimum is the next step. With d = x - x_predicted and v(x) = v_predicted + c1 d (at clamped
+/// nodes both predictions are the prescribed values, so that d = 0),
 ///     Phi = c0/2 d'Md + (1 + alpha) [W(x) - f_ext . d + v_predicted' D d + c1/2 d'Dd] + alpha (M a_n) . d
 template <class M>
 class Dynamics<M>::StepProblem {

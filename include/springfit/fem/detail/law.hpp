@@ -43,7 +43,8 @@ struct QuadraticLaw {
     template <class M>
     static Moduli<Scalar> moduli_of(const M& material, bool plane_stress) {
         return {static_cast<Scalar>(shear_modulus(material)),
-                static_cast<Scalar>(plane_stress ? plane_stress_lambda(material) : lame_lambda(material)), plane_stress};
+                static_cast<Scalar>(plane_stress ? plane_stress_lambda(material) : lame_lambda(material)),
+                plane_stress};
     }
 
     [[nodiscard]] Volumetric<Scalar> volumetric(Scalar theta) const {

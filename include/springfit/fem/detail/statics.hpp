@@ -44,7 +44,8 @@ public:
     [[nodiscard]] Scalar energy_rounding() const { return m_model->energy_rounding(); }
     void gradient(const Values<Scalar>& values, Values<Scalar>& gradient) {
         m_free.scatter(values, positions);
-        gradient = m_free.template gather<dimension, Scalar>(Nodes(m_model->internal_forces(positions) - external_forces));
+        const Nodes unbalanced = m_model->internal_forces(positions) - external_forces;
+        gradient = m_free.template gather<dimension, Scalar>(unbalanced);
     }
     [[nodiscard]] SymmetricMatrix<Scalar> hessian(const Values<Scalar>& values) {
         m_free.scatter(values, positions);
