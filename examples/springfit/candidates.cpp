@@ -5,6 +5,7 @@
 #include <springfit/fit/dominant_term.hpp>
 #include <springfit/ipopt/exact.hpp>
 #include <springfit/network/damping.hpp>
+#include <springfit/network/forces.hpp>
 #include <springfit/score/motion_error.hpp>
 
 #include "interrupt.hpp"
@@ -23,9 +24,16 @@ void set_damping(SpringNetwork<Dim, double>& network, double beta, const FitOpti
                                                  : stiffness_proportional_damping(network, beta);
 }
 
+/// Elastic energy of the network summed over all frames of motions, J.
 template <int Dim>
-double stiffness_sum(const SpringNetwork<Dim, double>& network) {
-    return network.stiffness.dot(network.rest_length.cwiseAbs2());
+double energy_in(const SpringNetwork<Dim, double>& network, const std::vector<Motion<Dim, double>>& motions) {
+    double energy = 0;
+    for (const auto& motion : motions) {
+        for (const auto& positions : motion.positions) {
+            energy += elastic_energy(network, positions);
+        }
+    }
+    return energy;
 }
 
 } // namespace
@@ -91,23 +99,25 @@ std::vector<Candidate<Dim>> make_candidates(const Discretisation<Dim>& body, con
             });
         }
     }
+    const double energy = energy_in(candidates.front().network, cases.training.motions);
     for (auto& candidate : candidates) {
-        candidate.relative_stiffness = stiffness_sum(candidate.network) / stiffness_sum(candidates.front().network);
+        candidate.relative_stiffness = energy_in(candidate.network, cases.training.motions) / energy;
     }
     return candidates;
 }
 
 template <int Dim>
-void score(std::vector<Candidate<Dim>>& candidates, const ReferenceCases<Dim>& cases) {
+void score(std::vector<Candidate<Dim>>& candidates, const ReferenceCases<Dim>& cases, const Execution& execution) {
+    const MotionErrorOptions<double> how{.step = {}, .execution = execution};
     Stage stage("score on motion");
     const std::size_t parts = 2 * candidates.size();
     std::size_t part = 0;
     for (auto& candidate : candidates) {
         candidate.held_out = motion_error(candidate.network, cases.held_out.scenarios, cases.held_out.motions,
-                                          stage.callback(part++, parts))
+                                          stage.callback(part++, parts), how)
                                  .error;
         candidate.training = motion_error(candidate.network, cases.training.scenarios, cases.training.motions,
-                                          stage.callback(part++, parts))
+                                          stage.callback(part++, parts), how)
                                  .error;
     }
 }
@@ -128,7 +138,7 @@ template std::vector<Candidate<2>> make_candidates<2>(const Discretisation<2>&, 
                                                       const FitOptions&, const Execution&);
 template std::vector<Candidate<3>> make_candidates<3>(const Discretisation<3>&, const ReferenceCases<3>&,
                                                       const FitOptions&, const Execution&);
-template void score<2>(std::vector<Candidate<2>>&, const ReferenceCases<2>&);
-template void score<3>(std::vector<Candidate<3>>&, const ReferenceCases<3>&);
+template void score<2>(std::vector<Candidate<2>>&, const ReferenceCases<2>&, const Execution&);
+template void score<3>(std::vector<Candidate<3>>&, const ReferenceCases<3>&, const Execution&);
 
 } // namespace program

@@ -20,7 +20,8 @@ struct Candidate {
     double seconds = 0;
     double held_out = 0;
     double training = 0;
-    /// sum k l^2 beside that of the first closed form: below 1 the springs are softer in all.
+    /// Elastic energy in the reference's training motion beside that of the first closed form: below 1 the springs resist
+    /// that motion less.
     double relative_stiffness = 1;
 };
 
@@ -33,7 +34,8 @@ template <int Dim>
 
 /// Fills in the errors of every candidate on both sets of load cases.
 template <int Dim>
-void score(std::vector<Candidate<Dim>>& candidates, const ReferenceCases<Dim>& cases);
+void score(std::vector<Candidate<Dim>>& candidates, const ReferenceCases<Dim>& cases,
+           const springfit::Execution& execution);
 
 /// The report's part on one candidate.
 [[nodiscard]] springfit::io::Json describe(const springfit::FitReport& fit);

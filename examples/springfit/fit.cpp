@@ -95,8 +95,8 @@ void print_table(const std::vector<Candidate<Dim>>& candidates, std::size_t best
                     candidate.training, candidate.relative_stiffness, candidate.seconds,
                     c == best ? "   <- returned" : "");
     }
-    std::printf("(errors: |x - x_ref| / |x_ref - x_rest| over free nodes, frames and cases; stiffness: sum k l^2 beside "
-                "the first closed form)\n\n");
+    std::printf("(errors: |x - x_ref| / |x_ref - x_rest| over free nodes, frames and cases; stiffness: energy in the "
+                "reference's motion beside the first closed form)\n\n");
 }
 
 /// Writes the motion of the reference and of the network under one load case, as far as both go.
@@ -108,6 +108,10 @@ void write_shown_motion(io::OutputGroup& outputs, const std::filesystem::path& h
     if (fitted.n_frames() < reference.n_frames()) {
         warnings.push_back(text("motion.h5: the network's motion ended after ", fitted.n_frames(), " of ",
                                 reference.n_frames(), " frames"));
+    }
+    if (fitted.n_frames() == 0) {
+        io::write_motion(outputs, h5, reference, body.topology);
+        return;
     }
     io::write_motion(outputs, h5, excerpt(reference, 0, fitted.n_frames()), body.topology, &fitted.positions);
 }
@@ -139,11 +143,12 @@ int fit_body(const AnyMesh& mesh, std::vector<Motion<Dim, double>> recorded, std
     watch_for_interrupt();
     since(fitting, "fit");
     Stage scoring("score");
-    score<Dim>(candidates, cases);
+    score<Dim>(candidates, cases, execution);
     since(scoring, "score");
 
-    std::size_t best = candidates.size() - 1; // the method asked for comes last
-    if (options.method == "auto" || options.method == "closed-form") {
+    const bool choose = options.method == "auto" || options.method == "closed-form";
+    std::size_t best = choose ? 0 : candidates.size() - 1; // a method asked for by name comes last
+    if (choose) {
         for (std::size_t c = 0; c < candidates.size(); ++c) {
             if (candidates[c].held_out < candidates[best].held_out) {
                 best = c;

@@ -41,7 +41,8 @@ void declare_fit(CLI::App& app, program::FitOptions& options) {
     add_optional(app, "--thickness", options.thickness, "thickness of a plane body or membrane, m (default 1)")
         ->group(reference);
     add_optional(app, "--damping-ratio", options.damping_ratio,
-                 "damping of the body's slowest motion, as a part of critical (default 0.05)")
+                 "damping of the body's slowest motion, as a part of critical (default: light, so that it takes "
+                 "a quarter of the explicit step)")
         ->group(reference);
     app.add_option("--reference", options.references,
                    "recorded motion of the same nodes (.xdmf .h5), in place of the FEM; may be given several times")

@@ -36,17 +36,18 @@ enum class LoadKind {
     return "unknown";
 }
 
-/// Amplitude that rises smoothly from 0 to 1 over `ramp`, holds, and is let go at `release`: afterwards the body swings.
+/// Amplitude that rises smoothly from 0 to 1 over `ramp`, holds, and from `release` on falls as smoothly over half of
+/// `ramp`: afterwards the body swings freely.
 template <std::floating_point Scalar>
 [[nodiscard]] Amplitude<Scalar> ramp_and_release(Scalar ramp, Scalar release) {
     require(ramp > 0, "ramp", "a positive time", ramp);
     require(release >= ramp, "release", text("a time not before the end of the ramp, ", ramp), release);
     return [ramp, release](Scalar time) {
-        if (time >= release) {
-            return Scalar(0);
-        }
-        const Scalar s = std::min(Scalar(1), std::max(Scalar(0), time / ramp));
-        return s * s * (3 - 2 * s);
+        const auto step = [](Scalar s) {
+            s = std::clamp(s, Scalar(0), Scalar(1));
+            return s * s * (3 - 2 * s);
+        };
+        return step(time / ramp) - step(2 * (time - release) / ramp);
     };
 }
 
