@@ -79,7 +79,8 @@ TEST_CASE("a quadratic edge takes 1/6, 4/6, 1/6 of its load, a quadratic triangl
     const auto solid = quadratic(tetrahedron_grid<double>({1, 1, 1}, {1., 1., 1.}));
     auto floor = boundary_facets(solid);
     std::erase_if(floor, [&](const auto& facet) {
-        return std::any_of(facet.corners.begin(), facet.corners.end(), [&](int node) { return solid.nodes(2, node) > 0; });
+        return std::any_of(facet.corners.begin(), facet.corners.end(),
+                           [&](int node) { return solid.nodes(2, node) > 0; });
     });
     const auto press = fem::pressure(solid, floor, 6.);
     for (std::size_t a = 0; a < press.nodes.size(); ++a) {

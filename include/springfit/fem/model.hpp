@@ -38,8 +38,8 @@ void validate(const Mesh<Dim, Scalar, Cell>& mesh);
 ///
 /// W = sum over quadrature points of w_q shear(F_q), plus sum over patches of V_p U(theta_p) with
 /// theta_p = sum_q w_q theta_q / V_p; a patch is one point unless the dilatation is `mean`. Triangles and
-/// quadrilaterals in space make a membrane: F is [3 x 2], in plane stress. The rest gradients are kept at every point. A model of the
-/// concept Reference (`fem/dynamics.hpp`).
+/// quadrilaterals in space make a membrane: F is [3 x 2], in plane stress. The rest gradients are kept at every point.
+/// A model of the concept Reference (`fem/dynamics.hpp`).
 template <int Dim, std::floating_point ScalarType, FiniteElementCell Cell, Material Mat>
     requires SpatialDimension<Dim>
 class Model {
