@@ -3,6 +3,7 @@
 
 #include <springfit/fem/dynamics.hpp>
 #include <springfit/mesh/structured.hpp>
+#include <springfit/motion/transfer.hpp>
 #include <springfit/solve/symmetric_solver.hpp>
 
 #include "reference.hpp"
@@ -54,7 +55,10 @@ public:
         options.stiffness_damping = beta;
         const springfit::fem::Model model(m_mesh, m_material, m_density, options);
         auto recording = springfit::record(model, with_edge_nodes(scenario), how);
-        keep_vertices(recording.motion);
+        if constexpr (has_edge_nodes) { // what acts on a node in the middle of an edge acts on the edge's ends
+            const auto [at_corners, at_nodes] = springfit::corner_interpolations(m_mesh);
+            recording.motion = springfit::transfer(recording.motion, at_corners, at_nodes, m_corner_mesh.nodes);
+        }
         return recording;
     }
 
@@ -95,20 +99,6 @@ private:
             }
         }
         return scenario;
-    }
-
-    void keep_vertices(springfit::Motion<Dim, double>& motion) const {
-        if constexpr (has_edge_nodes) {
-            const springfit::Index n = m_corner_mesh.n_nodes();
-            motion.rest_positions = motion.rest_positions.leftCols(n).eval();
-            std::erase_if(motion.clamped, [n](int node) { return node >= n; });
-            for (auto* frames :
-                 {&motion.positions, &motion.velocities, &motion.accelerations, &motion.external_forces}) {
-                for (auto& frame : *frames) {
-                    frame = frame.leftCols(n).eval();
-                }
-            }
-        }
     }
 
     CornerMesh m_corner_mesh;
