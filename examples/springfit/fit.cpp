@@ -119,14 +119,14 @@ void write_shown_motion(io::OutputGroup& outputs, const std::filesystem::path& h
 template <int Dim>
 int fit_body(const AnyMesh& mesh, std::vector<Motion<Dim, double>> recorded, std::vector<std::string> warnings,
              const FitOptions& options, io::OutputFolder& folder, io::NamedNumbers stages) {
-    const auto since = [&stages](const Stage& stage, const char* name) { stages.emplace_back(name, stage.seconds()); };
+    const auto since = [&stages](const Timer& timer, const char* name) { stages.emplace_back(name, timer.seconds()); };
     const Execution execution = parallel::tbb(options.threads);
     const Discretisation<Dim> body = discretise<Dim>(mesh, options);
     std::printf("%lld nodes, %lld %s cells, %lld springs\n", static_cast<long long>(body.network.n_nodes()),
                 static_cast<long long>(body.topology.cells.cols()), body.cell_name.c_str(),
                 static_cast<long long>(body.network.n_springs()));
 
-    Stage recording("reference");
+    const Timer recording;
     const ReferenceCases<Dim> cases = recorded.empty()
                                           ? record_cases<Dim>(*make_fem_reference<Dim>(mesh, options), body, options, execution)
                                           : split_recorded<Dim>(std::move(recorded), body, options);
@@ -137,12 +137,12 @@ int fit_body(const AnyMesh& mesh, std::vector<Motion<Dim, double>> recorded, std
     if (cut_short) {
         watch_for_interrupt(); // what is there is fitted; a further Ctrl-C ends that as well
     }
-    Stage fitting("fit");
+    const Timer fitting;
     auto candidates = make_candidates<Dim>(body, cases, options, execution);
     const bool fit_interrupted = interrupted();
     watch_for_interrupt();
     since(fitting, "fit");
-    Stage scoring("score");
+    const Timer scoring;
     score<Dim>(candidates, cases, execution);
     since(scoring, "score");
 
@@ -207,7 +207,7 @@ int fit_body(const AnyMesh& mesh, std::vector<Motion<Dim, double>> recorded, std
                      {"damping", options.damping}};
 
     io::OutputGroup outputs;
-    Stage writing("write");
+    const Timer writing;
     const auto& shown = cases.held_out.motions.front();
     write_shown_motion<Dim>(outputs, folder.path() / "motion.h5", body, shown, cases.held_out.scenarios.front(),
                             chosen.network, warnings);
@@ -279,10 +279,10 @@ int run_fit(const FitOptions& options) {
     if (is_motion_file(options.input)) {
         dimension = io::read_motion_dimension(options.input);
     } else {
-        Stage stage("read and mesh");
+        const Timer timer;
         mesh = read_mesh(options);
         dimension = dimension_of(*mesh);
-        stages.emplace_back("mesh", stage.seconds());
+        stages.emplace_back("mesh", timer.seconds());
     }
     if (interrupted()) {
         throw Interrupted();

@@ -10,6 +10,17 @@
 
 namespace program {
 
+/// Seconds since it was made.
+class Timer {
+public:
+    [[nodiscard]] double seconds() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - m_start).count();
+    }
+
+private:
+    std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
+};
+
 /// Shows one long stage on the terminal: a bar with the time left, or plain lines where the output is not a terminal.
 /// Its callback also carries the user's Ctrl-C to the library.
 class Stage {
