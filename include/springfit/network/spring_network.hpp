@@ -8,11 +8,16 @@
 
 namespace springfit {
 
-/// Point masses joined by springs with axial damping.
+/// Corners of simplices `[Dim + 1 x n_cells]`: triangles in the plane, tetrahedra in space, positively oriented.
+template <int Dim>
+using SimplexNodes = Eigen::Matrix<int, Dim + 1, Eigen::Dynamic>;
+
+/// Point masses joined by springs with axial damping and, optionally, cells that resist a change of their volume.
 ///
 /// With r = x_j - x_i, L = |r|, n = r / L, spring e = (i, j) pulls node i with
 ///     k_e (L - l_e) n + c_e ((v_j - v_i) . n) n
-/// and node j with the opposite. In the plane, k is the stiffness of the whole thickness.
+/// and node j with the opposite. Cell c has the energy 1/2 kappa_c (V - V_c)^2 / V_c, V its volume, in the plane its area;
+/// a network without cells is one of springs alone. In the plane, k and kappa are of the whole thickness.
 template <int Dim, std::floating_point ScalarType>
     requires SpatialDimension<Dim>
 struct SpringNetwork {
@@ -26,8 +31,13 @@ struct SpringNetwork {
     Values<Scalar> damping;             ///< c_e >= 0 [n_springs], N s/m
     Values<Scalar> mass;                ///< m_i > 0 [n_nodes], kg
 
+    SimplexNodes<Dim> cells;         ///< corners of the cells that hold their volume [Dim + 1 x n_cells]
+    Values<Scalar> rest_volume;      ///< V_c > 0 [n_cells], m^3; in the plane m^2
+    Values<Scalar> volume_stiffness; ///< kappa_c, of either sign [n_cells], Pa; in the plane N/m
+
     [[nodiscard]] Index n_nodes() const { return rest_positions.cols(); }
     [[nodiscard]] Index n_springs() const { return springs.cols(); }
+    [[nodiscard]] Index n_cells() const { return cells.cols(); }
 };
 
 /// Throws InvalidArgument unless all sizes agree, the ends are two different nodes, and values are finite and in range.
@@ -55,6 +65,28 @@ void validate(const SpringNetwork<Dim, Scalar>& network) {
         }
         if (!network.rest_positions.col(i).allFinite()) {
             throw InvalidArgument("rest_positions", "finite coordinates", text("node ", i));
+        }
+    }
+    const Index cells = network.n_cells();
+    require(network.rest_volume.size() == cells, "rest_volume", text(cells, " values, one per cell"),
+            network.rest_volume.size());
+    require(network.volume_stiffness.size() == cells, "volume_stiffness", text(cells, " values, one per cell"),
+            network.volume_stiffness.size());
+    for (Index c = 0; c < cells; ++c) {
+        if (!(network.rest_volume(c) > 0 && std::isfinite(network.rest_volume(c)))) {
+            throw InvalidArgument("rest_volume", "positive values", text(network.rest_volume(c), " at cell ", c));
+        }
+        if (!std::isfinite(network.volume_stiffness(c))) {
+            throw InvalidArgument("volume_stiffness", "finite values",
+                                  text(network.volume_stiffness(c), " at cell ", c));
+        }
+        for (int a = 0; a <= Dim; ++a) {
+            const int node = network.cells(a, c);
+            require(node >= 0 && node < nodes, "cells", text("node numbers in [0, ", nodes, ")"),
+                    text(node, " in cell ", c));
+            for (int b = 0; b < a; ++b) {
+                require(network.cells(b, c) != node, "cells", "different corners", text(node, " twice in cell ", c));
+            }
         }
     }
     for (Index e = 0; e < springs; ++e) {
