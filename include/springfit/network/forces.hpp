@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include <springfit/network/spring_network.hpp>
+#include <springfit/network/volume.hpp>
 #include <springfit/solve/clique_matrix.hpp>
 
 namespace springfit {
@@ -26,7 +26,8 @@ struct SpringVector {
 
 } // namespace detail
 
-/// Elastic energy sum_e 1/2 k_e (L_e - l_e)^2 at `positions` `[Dim x n_nodes]`, J. O(springs).
+/// Elastic energy sum_e 1/2 k_e (L_e - l_e)^2, with that of the cells (`volume_energy`), at `positions`
+/// `[Dim x n_nodes]`, J. O(springs + cells).
 template <int Dim, std::floating_point Scalar>
 [[nodiscard]] Scalar elastic_energy(const SpringNetwork<Dim, Scalar>& network, const Points<Dim, Scalar>& positions) {
     Scalar twice = 0;
@@ -35,10 +36,11 @@ template <int Dim, std::floating_point Scalar>
         const Scalar stretch = spring.length - network.rest_length(e);
         twice += network.stiffness(e) * stretch * stretch;
     }
-    return twice / 2;
+    return twice / 2 + volume_energy<Dim, Scalar>(network, positions);
 }
 
-/// Adds the elastic forces k_e (L_e - l_e) n_e to `forces` `[Dim x n_nodes]`, N: minus the gradient of the energy.
+/// Adds the elastic forces k_e (L_e - l_e) n_e and those of the cells (`add_volume_forces`) to `forces`
+/// `[Dim x n_nodes]`, N: minus the gradient of the energy. O(springs + cells).
 template <int Dim, std::floating_point Scalar>
 void add_elastic_forces(const SpringNetwork<Dim, Scalar>& network, const Points<Dim, Scalar>& positions,
                         Points<Dim, Scalar>& forces) {
@@ -49,10 +51,12 @@ void add_elastic_forces(const SpringNetwork<Dim, Scalar>& network, const Points<
         forces.col(spring.i) += force;
         forces.col(spring.j) -= force;
     }
+    add_volume_forces<Dim, Scalar>(network, positions, forces);
 }
 
-/// Adds elastic and axial damping forces, (k_e (L_e - l_e) + c_e (v_j - v_i) . n_e) n_e on i and the opposite on j, to
-/// `forces` `[Dim x n_nodes]`, N. One pass over the springs, no allocation.
+/// Adds elastic and axial damping forces, (k_e (L_e - l_e) + c_e (v_j - v_i) . n_e) n_e on i and the opposite on j, and
+/// the elastic forces of the cells, which have no damping, to `forces` `[Dim x n_nodes]`, N. One pass over springs and
+/// cells, no allocation.
 template <int Dim, std::floating_point Scalar>
 void add_spring_forces(const SpringNetwork<Dim, Scalar>& network, const Points<Dim, Scalar>& positions,
                        const Points<Dim, Scalar>& velocities, Points<Dim, Scalar>& forces) {
@@ -66,6 +70,7 @@ void add_spring_forces(const SpringNetwork<Dim, Scalar>& network, const Points<D
         forces.col(spring.i) += force;
         forces.col(spring.j) -= force;
     }
+    add_volume_forces<Dim, Scalar>(network, positions, forces);
 }
 
 /// Writes a_i = (f_i + external_i) / m_i `[Dim x n_nodes]`, m/s^2, of every node, clamped or not. No allocation where
@@ -83,15 +88,23 @@ void compute_accelerations(const SpringNetwork<Dim, Scalar>& network, const Poin
 
 /// Which second derivative of the elastic energy to take.
 enum class Curvature {
-    exact,                ///< k n n' + k (1 - l/L) (I - n n'), indefinite under compression
-    positive_semidefinite ///< the same without the geometric part of compressed springs (L < l)
+    /// Springs k n n' + k (1 - l/L) (I - n n'), indefinite under compression; cells
+    /// kappa/V_c (g g' + (V - V_c) d^2 V/dx^2), g = dV/dx, indefinite away from rest and where kappa < 0.
+    exact,
+    /// The same without the geometric part of compressed springs (L < l) and without the second derivative of V; cells
+    /// with kappa < 0 have none.
+    positive_semidefinite
 };
 
-/// The matrix of a network's springs over its free nodes, filled by `add_stiffness` and `add_damping`.
+/// The matrix of a network's springs and cells over its free nodes, filled by `add_stiffness` and `add_damping`. Its
+/// cliques are the springs, then the cells: clique n_springs + c is cell c.
 template <int Dim, std::floating_point Scalar>
 [[nodiscard]] CliqueMatrix<Dim, Scalar> spring_matrix(const SpringNetwork<Dim, Scalar>& network,
                                                       const FreeNodes& free) {
-    return CliqueMatrix<Dim, Scalar>(free, cliques_of(network.springs));
+    Cliques cliques = cliques_of(network.springs);
+    const Cliques cells = cliques_of(network.cells);
+    cliques.insert(cliques.end(), cells.begin(), cells.end());
+    return CliqueMatrix<Dim, Scalar>(free, cliques);
 }
 
 namespace detail {
@@ -107,9 +120,30 @@ void add_spring_block(CliqueMatrix<Dim, Scalar>& matrix, Index spring, const Eig
     matrix.add(spring, block);
 }
 
+/// Adds the Hessian of the energy of the cells.
+template <int Dim, std::floating_point Scalar>
+void add_volume_stiffness(const SpringNetwork<Dim, Scalar>& network, const Points<Dim, Scalar>& positions,
+                          Curvature curvature, CliqueMatrix<Dim, Scalar>& matrix) {
+    constexpr int size = Dim * (Dim + 1);
+    for (Index c = 0; c < network.n_cells(); ++c) {
+        const Scalar kappa = network.volume_stiffness(c);
+        if (kappa == 0 || (kappa < 0 && curvature == Curvature::positive_semidefinite)) {
+            continue;
+        }
+        const VolumeCell<Dim, Scalar> cell(network, c, positions);
+        const SimplexCorners<Dim, Scalar> gradient = cell.gradient();
+        const Eigen::Map<const Eigen::Matrix<Scalar, size, 1>> g(gradient.data());
+        Eigen::Matrix<Scalar, size, size> block = (kappa / network.rest_volume(c)) * g * g.transpose();
+        if (curvature == Curvature::exact) {
+            block += (kappa * cell.dilation) * volume_hessian<Dim, Scalar>(cell.corners);
+        }
+        matrix.add(network.n_springs() + c, block);
+    }
+}
+
 } // namespace detail
 
-/// Adds the Hessian of the elastic energy at `positions`, N/m, to a `spring_matrix`. O(springs).
+/// Adds the Hessian of the elastic energy at `positions`, N/m, to a `spring_matrix`. O(springs + cells).
 template <int Dim, std::floating_point Scalar>
 void add_stiffness(const SpringNetwork<Dim, Scalar>& network, const Points<Dim, Scalar>& positions, Curvature curvature,
                    CliqueMatrix<Dim, Scalar>& matrix) {
@@ -124,6 +158,7 @@ void add_stiffness(const SpringNetwork<Dim, Scalar>& network, const Points<Dim, 
         const Block b = network.stiffness(e) * (geometric * Block::Identity() + (1 - geometric) * n * n.transpose());
         detail::add_spring_block<Dim, Scalar>(matrix, e, b);
     }
+    detail::add_volume_stiffness<Dim, Scalar>(network, positions, curvature, matrix);
 }
 
 /// Adds `factor` times the damping matrix sum_e c_e n_e n_e' at `positions`, N s/m, to a `spring_matrix`. O(springs).

@@ -5,6 +5,7 @@
 
 #include <springfit/core/error.hpp>
 #include <springfit/core/types.hpp>
+#include <springfit/network/simplex.hpp>
 
 namespace springfit {
 
@@ -16,8 +17,8 @@ using SimplexNodes = Eigen::Matrix<int, Dim + 1, Eigen::Dynamic>;
 ///
 /// With r = x_j - x_i, L = |r|, n = r / L, spring e = (i, j) pulls node i with
 ///     k_e (L - l_e) n + c_e ((v_j - v_i) . n) n
-/// and node j with the opposite. Cell c has the energy 1/2 kappa_c (V - V_c)^2 / V_c, V its volume, in the plane its area;
-/// a network without cells is one of springs alone. In the plane, k and kappa are of the whole thickness.
+/// and node j with the opposite. Cell c has the energy 1/2 kappa_c (V - V_c)^2 / V_c, V its volume, in the plane its
+/// area; a network without cells is one of springs alone. In the plane, k and kappa are of the whole thickness.
 template <int Dim, std::floating_point ScalarType>
     requires SpatialDimension<Dim>
 struct SpringNetwork {
@@ -80,6 +81,7 @@ void validate(const SpringNetwork<Dim, Scalar>& network) {
             throw InvalidArgument("volume_stiffness", "finite values",
                                   text(network.volume_stiffness(c), " at cell ", c));
         }
+        SimplexCorners<Dim, Scalar> corners;
         for (int a = 0; a <= Dim; ++a) {
             const int node = network.cells(a, c);
             require(node >= 0 && node < nodes, "cells", text("node numbers in [0, ", nodes, ")"),
@@ -87,6 +89,11 @@ void validate(const SpringNetwork<Dim, Scalar>& network) {
             for (int b = 0; b < a; ++b) {
                 require(network.cells(b, c) != node, "cells", "different corners", text(node, " twice in cell ", c));
             }
+            corners.col(a) = network.rest_positions.col(node);
+        }
+        if (!(signed_volume<Dim, Scalar>(corners) > 0)) {
+            throw InvalidArgument("cells", "positively oriented corners",
+                                  text("cell ", c, ", inverted or flat at rest"));
         }
     }
     for (Index e = 0; e < springs; ++e) {

@@ -3,15 +3,16 @@
 
 #include <springfit/mesh/topology.hpp>
 #include <springfit/network/masses.hpp>
-#include <springfit/network/spring_network.hpp>
+#include <springfit/network/volume.hpp>
 
 namespace springfit {
 
-/// Which springs a mesh gets besides its edges, and what its masses are made of.
+/// Which springs a mesh gets besides its edges, whether its cells hold their volume, and what its masses are made of.
 template <std::floating_point Scalar>
 struct SpringOptions {
     bool diagonals = false;   ///< also the diagonals of quadrilaterals and hexahedra (faces and body)
     bool second_ring = false; ///< also the vertices that face each other across a shared facet; simplices only
+    bool volume = false;      ///< also cells that hold their volume (`add_volume_cells`); not on membranes
     Scalar density = 1;       ///< rho > 0, kg/m^3
     Scalar thickness = 1;     ///< h > 0, m; in the plane and on membranes alone
 };
@@ -101,8 +102,12 @@ template <int Dim, std::floating_point Scalar, CellType Cell>
     } else {
         require(!options.second_ring, "second_ring", "triangles or tetrahedra", Cell::name);
     }
-    return springs_from_list<Dim, Scalar>(corners.nodes, pairs,
-                                          node_masses(corners, options.density, options.thickness));
+    auto network =
+        springs_from_list<Dim, Scalar>(corners.nodes, pairs, node_masses(corners, options.density, options.thickness));
+    if (options.volume) {
+        add_volume_cells(network, corners);
+    }
+    return network;
 }
 
 /// Finds the spring between two nodes. O(log springs) a look-up.

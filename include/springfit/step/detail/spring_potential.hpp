@@ -120,6 +120,12 @@ public:
             const Scalar tension = m_network->stiffness(e) * std::abs(spring.length - m_network->rest_length(e));
             terms += tension * (spring.length + m_network->rest_length(e));
         }
+        for (Index c = 0; c < m_network->n_cells(); ++c) {
+            const VolumeCell<Dim, Scalar> cell(*m_network, c, m_points);
+            const SimplexCorners<Dim, Scalar> sides = cell.corners.colwise() - cell.corners.col(0);
+            const Scalar size = cell.gradient().colwise().norm().dot(sides.colwise().norm()); // of the sums in V
+            terms += std::abs(m_network->volume_stiffness(c) * cell.dilation) * (size + m_network->rest_volume(c));
+        }
         for (int i : free_nodes().nodes()) {
             const Vector<Dim, Scalar> away = m_points.col(i) - m_target.col(i);
             terms += m_inertia * m_network->mass(i) * away.squaredNorm() + std::abs(m_external->col(i).dot(away));
@@ -134,6 +140,16 @@ public:
             const Scalar value = m_network->stiffness(e) + m_damping * m_network->damping(e);
             stiffness(m_network->springs(0, e)) += value;
             stiffness(m_network->springs(1, e)) += value;
+        }
+        for (Index c = 0; c < m_network->n_cells(); ++c) {
+            const VolumeCell<Dim, Scalar> cell(*m_network, c, positions);
+            const Scalar kappa = std::abs(m_network->volume_stiffness(c));
+            const auto slopes = cell.gradient().colwise().norm().eval();
+            const auto curvature = cell.curvature();
+            for (int a = 0; a <= Dim; ++a) {
+                stiffness(m_network->cells(a, c)) += kappa * (slopes(a) * slopes.sum() / m_network->rest_volume(c) +
+                                                              std::abs(cell.dilation) * curvature(a));
+            }
         }
         return std::numeric_limits<Scalar>::epsilon() * stiffness.maxCoeff() * positions.cwiseAbs().maxCoeff();
     }
