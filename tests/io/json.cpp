@@ -42,10 +42,34 @@ Model<Dim, Scalar> example() {
     return model;
 }
 
-/// The message with which the example is refused after `change`.
+/// The example with a cell, if need be turned so that its corners are in positive order.
+template <int Dim, class Scalar>
+Model<Dim, Scalar> example_with_cells() {
+    auto model = example<Dim, Scalar>();
+    auto& network = model.network;
+    network.rest_positions(Dim - 1, 3) += 1; // in space the four lie in a plane
+    network.cells.resize(Dim + 1, 2);
+    for (int c = 0; c < 2; ++c) {
+        SimplexCorners<Dim, Scalar> corners;
+        for (int a = 0; a <= Dim; ++a) {
+            network.cells(a, c) = (a + c) % 4;
+            corners.col(a) = network.rest_positions.col(network.cells(a, c));
+        }
+        if (signed_volume<Dim, Scalar>(corners) < 0) {
+            std::swap(network.cells(0, c), network.cells(1, c));
+        }
+    }
+    network.rest_volume.resize(2);
+    network.rest_volume << Scalar(1) / 3, std::numeric_limits<Scalar>::min();
+    network.volume_stiffness.resize(2);
+    network.volume_stiffness << Scalar(-1) / 7, Scalar(1e7) / 3;
+    return model;
+}
+
+/// The message with which a model is refused after `change`.
 template <class Change>
-std::string refusal(const Change& change) {
-    Json json = Json::parse(model_text(example<2, double>()));
+std::string refusal(const Change& change, const Model<2, double>& model = example<2, double>()) {
+    Json json = Json::parse(model_text(model));
     change(json);
     return file_error([&] { (void)model_from_json<2, double>(json, "model.json"); });
 }
@@ -70,6 +94,24 @@ TEST_CASE_TEMPLATE("a model reads back bit for bit", T, SPRINGFIT_TEST_SPACES) {
     CHECK(read.stable_time_step == model.stable_time_step);
     CHECK(read.provenance == model.provenance);
     CHECK(model_text(read) == model_text(model));
+}
+
+TEST_CASE_TEMPLATE("cells read back bit for bit, and a model without them has none", T, SPRINGFIT_TEST_SPACES) {
+    constexpr int dim = T::dimension;
+    using Scalar = typename T::Scalar;
+    const auto model = example_with_cells<dim, Scalar>();
+    const auto read = model_from_json<dim, Scalar>(Json::parse(model_text(model)), "model.json");
+    CHECK(read.network.cells == model.network.cells);
+    CHECK(read.network.rest_volume == model.network.rest_volume);
+    CHECK(read.network.volume_stiffness == model.network.volume_stiffness);
+    CHECK(read.network.stiffness == model.network.stiffness);
+    CHECK(model_text(read) == model_text(model));
+
+    const Json without = Json::parse(model_text(example<dim, Scalar>()));
+    CHECK_FALSE(without.contains("cells"));
+    const auto plain = model_from_json<dim, Scalar>(without, "model.json");
+    CHECK(plain.network.n_cells() == 0);
+    validate(plain.network);
 }
 
 TEST_CASE("random doubles read back bit for bit") {
@@ -100,7 +142,10 @@ TEST_CASE("the text of a model is the contract's") {
                      Values<double>{{2.5}},
                      Values<double>{{1}},
                      Values<double>{{0}},
-                     Values<double>{{1, 1}}};
+                     Values<double>{{1, 1}},
+                     {},
+                     {},
+                     {}};
     model.fixed = {0};
     model.stable_time_step = 0.25;
     model.provenance["springfit"] = "0.1.0";
@@ -192,6 +237,37 @@ TEST_CASE("what is missing or wrong in a model is named by its JSON pointer") {
           "model.json: /springs/stiffness/0: expected a number not below 0, found -2");
     CHECK(replaced("/stable_time_step", "fast") == "model.json: /stable_time_step: expected a number, found \"fast\"");
     CHECK(replaced("", 1) == "model.json: /: expected an object, found 1");
+}
+
+TEST_CASE("what is missing or wrong in the cells of a model is named by its JSON pointer") {
+    const auto model = example_with_cells<2, double>();
+    for (const char* key : {"nodes", "rest_volume", "stiffness"}) {
+        CHECK(refusal([&](Json& json) { json["cells"].erase(key); }, model) ==
+              std::string("model.json: /cells/") + key + ": is missing");
+    }
+    const auto replaced = [&](const char* pointer, const Json& value) {
+        return refusal([&](Json& json) { json[Json::json_pointer(pointer)] = value; }, model);
+    };
+    CHECK(replaced("/cells", nullptr) == "model.json: /cells: expected an object, found null");
+    CHECK(replaced("/cells/nodes", 1) ==
+          "model.json: /cells/nodes: expected an array, the corners of each cell, found 1");
+    CHECK(replaced("/cells/nodes/1", {0, 1}) ==
+          "model.json: /cells/nodes/1: expected an array of 3, the corners of the cell, found an array of 2");
+    CHECK(replaced("/cells/nodes/1/2", 4) ==
+          "model.json: /cells/nodes/1/2: expected a whole number in [0, 4), found 4");
+    const std::string positive = "different corners in positive order around a positive volume at rest";
+    CHECK(replaced("/cells/nodes/0", {1, 1, 2}) ==
+          "model.json: /cells/nodes/0: expected " + positive + ", found [1,1,2]");
+    const auto& cell = model.network.cells;
+    CHECK(replaced("/cells/nodes/0", {cell(1, 0), cell(0, 0), cell(2, 0)}) ==
+          text("model.json: /cells/nodes/0: expected ", positive, ", found [", cell(1, 0), ',', cell(0, 0), ',',
+               cell(2, 0), ']'));
+    CHECK(replaced("/cells/rest_volume/1", 0) ==
+          "model.json: /cells/rest_volume/1: expected a positive number, found 0");
+    CHECK(replaced("/cells/rest_volume", {1}) ==
+          "model.json: /cells/rest_volume: expected an array of 2, one number per cell, found an array of 1");
+    CHECK(replaced("/cells/stiffness/0", "soft") ==
+          "model.json: /cells/stiffness/0: expected a number, found \"soft\"");
 }
 
 TEST_CASE("a file that is missing, no JSON or beyond the scalar is refused with its name and line") {

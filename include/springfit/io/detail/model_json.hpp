@@ -133,6 +133,28 @@ template <int Dim, std::floating_point Scalar>
     return network;
 }
 
+template <int Dim, std::floating_point Scalar>
+void read_cells(const JsonPlace& cells, SpringNetwork<Dim, Scalar>& network) {
+    const JsonPlace corners = cells.member("nodes");
+    const auto n_cells = static_cast<Index>(corners.array_size("an array, the corners of each cell"));
+    network.cells.resize(Dim + 1, n_cells);
+    for (Index c = 0; c < n_cells; ++c) {
+        const JsonPlace cell = corners.element(static_cast<std::size_t>(c));
+        (void)cell.array_size(text("an array of ", Dim + 1, ", the corners of the cell"), Dim + 1);
+        SimplexCorners<Dim, Scalar> positions;
+        for (int a = 0; a <= Dim; ++a) {
+            const int node = cell.element(static_cast<std::size_t>(a)).index_below(network.n_nodes());
+            network.cells(a, c) = node;
+            positions.col(a) = network.rest_positions.col(node);
+        }
+        if (!(signed_volume<Dim, Scalar>(positions) > 0)) {
+            cell.refuse("different corners in positive order around a positive volume at rest", cell.value().dump());
+        }
+    }
+    network.rest_volume = read_values<Scalar>(cells.member("rest_volume"), n_cells, "cell", Range::positive);
+    network.volume_stiffness = read_values<Scalar>(cells.member("stiffness"), n_cells, "cell", Range::any);
+}
+
 } // namespace detail
 
 template <int Dim, std::floating_point Scalar>
@@ -163,6 +185,11 @@ std::string model_text(const Model<Dim, Scalar>& model) {
     json["springs"]["stiffness"] = detail::values_to_json(network.stiffness);
     json["springs"]["rest_length"] = detail::values_to_json(network.rest_length);
     json["springs"]["damping"] = detail::values_to_json(network.damping);
+    if (network.n_cells() > 0) {
+        json["cells"]["nodes"] = detail::columns_to_json(network.cells);
+        json["cells"]["rest_volume"] = detail::values_to_json(network.rest_volume);
+        json["cells"]["stiffness"] = detail::values_to_json(network.volume_stiffness);
+    }
     json["stable_time_step"] = static_cast<double>(model.stable_time_step);
     json["provenance"] = model.provenance;
     return json_text(json);
@@ -186,6 +213,9 @@ Model<Dim, Scalar> model_from_json(const Json& json, const std::string& file) {
     Model<Dim, Scalar> model;
     const JsonPlace nodes = root.member("nodes");
     model.network = detail::read_network<Dim, Scalar>(nodes, root.member("springs"));
+    if (json.contains("cells")) {
+        detail::read_cells<Dim, Scalar>(root.member("cells"), model.network);
+    }
     const JsonPlace fixed = nodes.member("fixed");
     for (std::size_t a = 0; a < fixed.array_size("an array of node numbers"); ++a) {
         const JsonPlace place = fixed.element(a);
