@@ -47,6 +47,8 @@ public:
     static constexpr int dimension = Dim;
     using Scalar = ScalarType;
     static constexpr bool is_membrane = springfit::is_membrane<Dim, Scalar, Cell>;
+    static constexpr bool is_solid = Cell::dimension == 3;
+    static constexpr bool is_linear = std::same_as<Mat, LinearElastic>; ///< forces are linear in the displacement
 
     /// `density` rho in kg/m^3, > 0. Throws InvalidArgument for a mesh, material or option that cannot be used.
     Model(const Mesh<Dim, Scalar, Cell>& mesh, const Mat& material, double density,

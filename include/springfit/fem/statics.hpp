@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <type_traits>
 
 #include <springfit/fem/model.hpp>
@@ -8,6 +9,13 @@
 #include <springfit/solve/newton.hpp>
 
 namespace springfit::fem {
+
+namespace detail {
+
+template <class M>
+class PotentialEnergy;
+
+} // namespace detail
 
 template <std::floating_point Scalar>
 struct StaticsOptions {
@@ -28,6 +36,53 @@ struct StaticsReport {
     Scalar residual = 0;            ///< largest component of force out of balance on a free node, N
 };
 
+/// Static equilibria of a model under one load case after another.
+///
+/// The pattern of the stiffness and what the solver has learnt of it are kept for as long as the same nodes are clamped,
+/// so sort many load cases by their clamps. Linear systems of solids are solved by conjugate gradients with the diagonal
+/// (in a body of 2000 nodes, a factorisation costs as much as twenty of these), those of plane bodies and membranes, and
+/// of solids where that takes too long, with a factorisation. A model of the concept StaticSolver.
+template <class M>
+class Statics {
+public:
+    static constexpr int dimension = M::dimension;
+    using Scalar = typename M::Scalar;
+    using Nodes = Points<dimension, Scalar>; ///< [Dim x n_nodes]
+
+    /// Keeps a copy of the model. Throws InvalidArgument for an option out of its range.
+    explicit Statics(M model, const StaticsOptions<Scalar>& options = {});
+    Statics(const Statics&) = delete;
+    Statics& operator=(const Statics&) = delete;
+
+    [[nodiscard]] const M& model() const { return m_model; }
+    [[nodiscard]] const Points<dimension, Scalar>& rest_positions() const { return m_model.rest_positions(); }
+    [[nodiscard]] const Values<Scalar>& masses() const { return m_model.masses(); }
+
+    /// The equilibrium f_int(x) = f_ext at `time`; see the function of this name.
+    [[nodiscard]] StaticsReport<dimension, Scalar> equilibrium(const Scenario<dimension, Scalar>& scenario,
+                                                               Scalar time = 0, const Nodes& start = {});
+
+    /// The same for the concept StaticSolver: `positions` `[Dim x n_nodes]` are what `equilibrium` ends with.
+    Status balance(const Scenario<dimension, Scalar>& scenario, Scalar time, Nodes& positions);
+
+    /// The answer to small loads and clamp displacements, K u = f_ext with K at the rest positions: displacement
+    /// `[Dim x n_nodes]`, m, to a relative residual of `tolerance` of the options. Status `failed` where the clamps do
+    /// not hold the body.
+    Status linear_response(const Scenario<dimension, Scalar>& scenario, Scalar time, Nodes& displacement);
+
+private:
+    void use_clamps(const Scenario<dimension, Scalar>& scenario);
+    [[nodiscard]] Nodes follow_clamps(const Nodes& x, const Nodes& moved);
+    [[nodiscard]] Values<Scalar> clamp_forces(const Nodes& x, const Nodes& way) const;
+
+    M m_model;
+    StaticsOptions<Scalar> m_options;
+    std::vector<int> m_clamped;
+    FreeNodes m_free;
+    std::optional<detail::PotentialEnergy<M>> m_potential; ///< of m_model over m_free
+    SymmetricSolver<Scalar> m_solver;
+};
+
 /// The static equilibrium of a model under the loads and clamps of a scenario at `time`: f_int(x) = f_ext.
 ///
 /// Loads are dead: they keep direction and size. Newton's method with line search minimises the potential energy; where
@@ -39,7 +94,16 @@ template <class M>
 equilibrium(const M& model, const Scenario<M::dimension, typename M::Scalar>& scenario,
             std::type_identity_t<typename M::Scalar> time = 0,
             const StaticsOptions<std::type_identity_t<typename M::Scalar>>& options = {},
-            const Points<M::dimension, typename M::Scalar>& start = {});
+            const Points<M::dimension, typename M::Scalar>& start = {}) {
+    return Statics<M>(model, options).equilibrium(scenario, time, start);
+}
+
+/// What finds the equilibria of a model under the default options: `fem::Model` is a model of the concept
+/// StaticReference.
+template <int Dim, std::floating_point Scalar, FiniteElementCell Cell, Material Mat>
+[[nodiscard]] Statics<Model<Dim, Scalar, Cell, Mat>> make_static_solver(const Model<Dim, Scalar, Cell, Mat>& model) {
+    return Statics<Model<Dim, Scalar, Cell, Mat>>(model);
+}
 
 } // namespace springfit::fem
 

@@ -75,13 +75,12 @@ Model<Dim, S, Cell, Mat>::Model(const Mesh<Dim, S, Cell>& mesh, const Mat& mater
 template <int Dim, std::floating_point S, FiniteElementCell Cell, Material Mat>
     requires SpatialDimension<Dim>
 void Model<Dim, S, Cell, Mat>::check_options() const {
-    const bool solid = Cell::dimension == 3;
     const bool strain = m_options.plane == Plane::strain;
     require(m_options.thickness > 0 && std::isfinite(m_options.thickness), "thickness", "a positive thickness",
             m_options.thickness);
-    require(!solid || m_options.thickness == 1, "thickness", "none given for a solid", m_options.thickness);
+    require(!is_solid || m_options.thickness == 1, "thickness", "none given for a solid", m_options.thickness);
     require(Dim == 2 || !strain, "plane", "plane strain for plane bodies only", is_membrane ? "a membrane" : "a solid");
-    require(!is_mean() || solid || (Dim == 2 && strain), "dilatation", "pointwise in plane stress, which does not lock",
+    require(!is_mean() || is_solid || (Dim == 2 && strain), "dilatation", "pointwise in plane stress, which does not lock",
             "mean");
     require(m_options.mass_damping >= 0 && std::isfinite(m_options.mass_damping), "mass_damping",
             "a value not below 0", m_options.mass_damping);

@@ -59,98 +59,148 @@ private:
     Stiffness<dimension, Scalar> m_stiffness;
 };
 
+} // namespace detail
+
+template <class M>
+Statics<M>::Statics(M model, const StaticsOptions<Scalar>& options)
+    : m_model(std::move(model)), m_options(options) {
+    require(options.tolerance > 0 && options.tolerance < 1, "tolerance", "a value in (0, 1)", options.tolerance);
+    require(options.max_iterations >= 1, "max_iterations", "at least one iteration", options.max_iterations);
+    require(options.max_halvings >= 0, "max_halvings", "a number not below 0", options.max_halvings);
+    m_solver.set_max_diagonal_iterations(M::is_solid ? detail::diagonal_iterations : 0);
+}
+
+template <class M>
+void Statics<M>::use_clamps(const Scenario<dimension, Scalar>& scenario) {
+    springfit::validate(scenario, rest_positions().cols());
+    std::vector<int> clamped = clamped_nodes(scenario, rest_positions().cols());
+    if (!m_potential || clamped != m_clamped) {
+        m_clamped = std::move(clamped);
+        m_free = FreeNodes(rest_positions().cols(), m_clamped);
+        m_potential.emplace(m_model, m_free);
+        m_solver.reset();
+    }
+}
+
+/// Forces on the free nodes that a small displacement `way` of the clamped ones puts out of balance, K_fc u_c.
+template <class M>
+auto Statics<M>::clamp_forces(const Nodes& x, const Nodes& way) const -> Values<Scalar> {
+    const Scalar largest = way.cwiseAbs().maxCoeff();
+    if (!(largest > 0)) {
+        return Values<Scalar>::Zero(dimension * m_free.n_free());
+    }
+    const Scalar size = (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).maxCoeff();
+    const Scalar h = std::cbrt(std::numeric_limits<Scalar>::epsilon()) * size / largest;
+    const Nodes change = (m_model.internal_forces(x + h * way) - m_model.internal_forces(x - h * way)) / (2 * h);
+    return m_free.template gather<dimension, Scalar>(change);
+}
+
 /// Moves the free nodes along with a displacement of the clamped ones, to first order: K_ff u_f = -K_fc u_c. Without
 /// it, cells at the clamps would be crushed before Newton's method starts. Where that fails or leads to positions that
 /// the material does not allow, only the clamped nodes move.
 template <class M>
-[[nodiscard]] Points<M::dimension, typename M::Scalar>
-follow_clamps(const M& model, const FreeNodes& free, PotentialEnergy<M>& potential,
-              SymmetricSolver<typename M::Scalar>& solver, const Points<M::dimension, typename M::Scalar>& x,
-              const Points<M::dimension, typename M::Scalar>& moved) {
-    constexpr int dim = M::dimension;
-    using Scalar = typename M::Scalar;
-    const Points<dim, Scalar> way = moved - x; // of the clamped nodes, 0 elsewhere
-    const Scalar largest = way.cwiseAbs().maxCoeff();
-    const Scalar size = (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).maxCoeff();
-    if (!(largest > 0) || free.n_free() == 0) {
+auto Statics<M>::follow_clamps(const Nodes& x, const Nodes& moved) -> Nodes {
+    if (x == moved || m_free.n_free() == 0) {
         return moved;
     }
-    const Scalar h = std::cbrt(std::numeric_limits<Scalar>::epsilon()) * size / largest;
-    const Points<dim, Scalar> change =
-        (model.internal_forces(x + h * way) - model.internal_forces(x - h * way)) / (2 * h);
-    const Values<Scalar> push = -free.template gather<dim, Scalar>(change);
-    Values<Scalar> values = free.template gather<dim, Scalar>(x);
+    const Values<Scalar> push = -clamp_forces(x, moved - x);
+    const Values<Scalar> values = m_free.template gather<dimension, Scalar>(x);
     Values<Scalar> follow;
-    if (push.allFinite() && solver.solve(potential.hessian(values), push, follow, Scalar(1e-3))) {
-        Points<dim, Scalar> followed = moved;
-        free.template scatter<dim, Scalar>(values + follow, followed);
-        if (std::isfinite(model.energy(followed))) {
+    if (push.allFinite() && m_solver.solve(m_potential->hessian(values), push, follow, Scalar(1e-3))) {
+        Nodes followed = moved;
+        m_free.template scatter<dimension, Scalar>(values + follow, followed);
+        if (std::isfinite(m_model.energy(followed))) {
             return followed;
         }
     }
     return moved;
 }
 
-} // namespace detail
+template <class M>
+Status Statics<M>::linear_response(const Scenario<dimension, Scalar>& scenario, Scalar time, Nodes& displacement) {
+    use_clamps(scenario);
+    const Nodes& rest = rest_positions();
+    Nodes moved = rest;
+    apply_clamps<dimension, Scalar>(scenario, rest, time, moved);
+    displacement = moved - rest;
+    if (m_free.n_free() == 0) {
+        return Status::converged;
+    }
+    const Nodes loads = external_forces<dimension, Scalar>(scenario, masses(), time);
+    const Values<Scalar> push =
+        m_free.template gather<dimension, Scalar>(loads) - clamp_forces(rest, displacement);
+    m_potential->positions = rest;
+    const auto stiffness = m_potential->hessian(m_free.template gather<dimension, Scalar>(rest));
+    Values<Scalar> values;
+    Values<Scalar> held(push.size());
+    if (!m_solver.solve(stiffness, push, values, m_options.tolerance)) {
+        return Status::failed;
+    }
+    stiffness.multiply(values, held);
+    if (!((held - push).norm() <= Scalar(0.01) * push.norm())) { // the solver had to shift a singular matrix
+        return Status::failed;
+    }
+    m_free.template scatter<dimension, Scalar>(values, displacement);
+    return Status::converged;
+}
 
 template <class M>
-StaticsReport<M::dimension, typename M::Scalar>
-equilibrium(const M& model, const Scenario<M::dimension, typename M::Scalar>& scenario,
-            std::type_identity_t<typename M::Scalar> time,
-            const StaticsOptions<std::type_identity_t<typename M::Scalar>>& options,
-            const Points<M::dimension, typename M::Scalar>& start) {
-    constexpr int dim = M::dimension;
-    using Scalar = typename M::Scalar;
-    const auto& rest = model.rest_positions();
-    require(options.tolerance > 0 && options.tolerance < 1, "tolerance", "a value in (0, 1)", options.tolerance);
-    require(options.max_iterations >= 1, "max_iterations", "at least one iteration", options.max_iterations);
-    require(options.max_halvings >= 0, "max_halvings", "a number not below 0", options.max_halvings);
+Status Statics<M>::balance(const Scenario<dimension, Scalar>& scenario, Scalar time, Nodes& positions) {
+    Nodes start;
+    if constexpr (M::is_linear) {
+        if (linear_response(scenario, time, start) != Status::converged) {
+            start.resize(dimension, 0);
+        } else {
+            start += rest_positions();
+        }
+    }
+    auto report = equilibrium(scenario, time, start);
+    positions = std::move(report.state.positions);
+    return report.status;
+}
+
+template <class M>
+auto Statics<M>::equilibrium(const Scenario<dimension, Scalar>& scenario, Scalar time, const Nodes& start)
+    -> StaticsReport<dimension, Scalar> {
+    use_clamps(scenario);
+    const Nodes& rest = rest_positions();
     require(start.size() == 0 || start.cols() == rest.cols(), "start", text(rest.cols(), " columns, one per node"),
             start.cols());
-    springfit::validate(scenario, rest.cols());
+    const Nodes full_load = external_forces<dimension, Scalar>(scenario, masses(), time);
+    Nodes x = start.size() > 0 ? start : (scenario.initial_positions.size() > 0 ? scenario.initial_positions : rest);
+    Nodes goal = x;
+    apply_clamps<dimension, Scalar>(scenario, rest, time, goal);
+    const Nodes clamps_way = goal - x;
 
-    const FreeNodes free(rest.cols(), clamped_nodes(scenario, rest.cols()));
-    const Points<dim, Scalar> full_load = external_forces<dim, Scalar>(scenario, model.masses(), time);
-    Points<dim, Scalar> x =
-        start.size() > 0 ? start : (scenario.initial_positions.size() > 0 ? scenario.initial_positions : rest);
-    Points<dim, Scalar> goal = x;
-    apply_clamps<dim, Scalar>(scenario, rest, time, goal);
-    const Points<dim, Scalar> clamps_way = goal - x;
-
-    detail::PotentialEnergy<M> potential(model, free);
-    SymmetricSolver<Scalar> solver;
-    solver.set_max_diagonal_iterations(detail::diagonal_iterations);
-
-    StaticsReport<dim, Scalar> report;
+    StaticsReport<dimension, Scalar> report;
     Scalar step = 1;
     for (int halvings = 0; report.load < 1;) {
         const Scalar load = std::min(Scalar(1), report.load + step);
-        potential.positions = x;
-        potential.external_forces = load * full_load;
-        Points<dim, Scalar> trial =
-            detail::follow_clamps<M>(model, free, potential, solver, x, x + (load - report.load) * clamps_way);
-        potential.positions = trial;
-        Values<Scalar> values = free.template gather<dim, Scalar>(trial);
+        m_potential->positions = x;
+        m_potential->external_forces = load * full_load;
+        Nodes trial = follow_clamps(x, x + (load - report.load) * clamps_way);
+        m_potential->positions = trial;
+        Values<Scalar> values = m_free.template gather<dimension, Scalar>(trial);
         const Scalar largest = std::max(full_load.cwiseAbs().maxCoeff(),
-                                        model.internal_forces(trial).cwiseAbs().maxCoeff());
-        NewtonOptions<Scalar> newton{.max_iterations = options.max_iterations};
+                                        m_model.internal_forces(trial).cwiseAbs().maxCoeff());
+        NewtonOptions<Scalar> newton{.max_iterations = m_options.max_iterations};
         newton.linear_tolerance = Scalar(1e-3);
-        newton.gradient_tolerance = options.tolerance * largest;
+        newton.gradient_tolerance = m_options.tolerance * largest;
         if (std::isfinite(largest)) {
-            newton.gradient_tolerance =
-                std::max(newton.gradient_tolerance, detail::force_rounding(potential.hessian(values), trial));
+            newton.gradient_tolerance = std::max(newton.gradient_tolerance,
+                                                 detail::force_rounding(m_potential->hessian(values), trial));
         }
-        const auto solved = minimise(potential, values, solver, newton);
+        const auto solved = minimise(*m_potential, values, m_solver, newton);
         report.iterations += solved.iterations;
         report.status = solved.status;
         report.residual = solved.gradient_max;
         if (solved.status == Status::converged) {
-            free.template scatter<dim, Scalar>(values, trial);
+            m_free.template scatter<dimension, Scalar>(values, trial);
             x = trial;
             report.load = load;
             ++report.load_steps;
             step *= 2;
-        } else if (halvings++ < options.max_halvings) {
+        } else if (halvings++ < m_options.max_halvings) {
             step /= 2;
         } else {
             break;
@@ -158,8 +208,8 @@ equilibrium(const M& model, const Scenario<M::dimension, typename M::Scalar>& sc
     }
     report.state.time = time;
     report.state.positions = x;
-    report.state.velocities.setZero(dim, x.cols());
-    report.state.accelerations.setZero(dim, x.cols());
+    report.state.velocities.setZero(dimension, x.cols());
+    report.state.accelerations.setZero(dimension, x.cols());
     return report;
 }
 

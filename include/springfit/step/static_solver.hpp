@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <springfit/step/equilibrium.hpp>
+
+namespace springfit {
+
+/// Static equilibria of a network under one load case after another. A model of the concept StaticSolver.
+template <int Dim, std::floating_point ScalarType>
+class NetworkStatics {
+public:
+    static constexpr int dimension = Dim;
+    using Scalar = ScalarType;
+
+    /// Keeps a copy of the network.
+    explicit NetworkStatics(SpringNetwork<Dim, Scalar> network) : m_network(std::move(network)) { validate(m_network); }
+
+    [[nodiscard]] const Points<Dim, Scalar>& rest_positions() const { return m_network.rest_positions; }
+    [[nodiscard]] const Values<Scalar>& masses() const { return m_network.mass; }
+
+    /// The positions `[Dim x n_nodes]` that `equilibrium` ends with, whether it is stable or not.
+    Status balance(const Scenario<Dim, Scalar>& scenario, Scalar time, Points<Dim, Scalar>& positions) const {
+        EquilibriumOptions<Dim, Scalar> options;
+        options.time = time;
+        auto found = equilibrium(m_network, scenario, options);
+        positions = std::move(found.positions);
+        return found.status;
+    }
+
+    /// K u = f with K at the rest positions and f the loads and the springs' own forces there: displacement
+    /// `[Dim x n_nodes]`, m. The factorisation is kept while the same nodes are clamped. Status `failed` where the
+    /// springs do not hold the free nodes.
+    Status linear_response(const Scenario<Dim, Scalar>& scenario, Scalar time, Points<Dim, Scalar>& displacement) {
+        validate(scenario, m_network.n_nodes());
+        use_clamps(clamped_nodes(scenario, m_network.n_nodes()));
+        const Points<Dim, Scalar>& rest = m_network.rest_positions;
+        Points<Dim, Scalar> moved = rest;
+        apply_clamps<Dim, Scalar>(scenario, rest, time, moved);
+        displacement = moved - rest;
+        if (m_free.n_free() == 0) {
+            return Status::converged;
+        }
+        if (!m_is_held) {
+            return Status::failed;
+        }
+        Points<Dim, Scalar> forces = external_forces<Dim, Scalar>(scenario, m_network.mass, time);
+        add_elastic_forces<Dim, Scalar>(m_network, rest, forces);
+        const Values<Scalar> way = displacement.reshaped();
+        const Values<Scalar> pull = m_full.matrix().template selfadjointView<Eigen::Lower>() * way;
+        forces -= pull.reshaped(Dim, rest.cols());
+        m_free.template scatter<Dim, Scalar>(m_solver.apply_factor(m_free.template gather<Dim, Scalar>(forces)),
+                                             displacement);
+        return Status::converged;
+    }
+
+private:
+    void use_clamps(std::vector<int> clamped) {
+        if (m_full.matrix().cols() > 0 && clamped == m_clamped) {
+            return;
+        }
+        m_clamped = std::move(clamped);
+        m_free = FreeNodes(m_network.n_nodes(), m_clamped);
+        m_full = spring_matrix(m_network, FreeNodes(m_network.n_nodes(), {}));
+        add_stiffness<Dim, Scalar>(m_network, m_network.rest_positions, Curvature::exact, m_full);
+        auto held = spring_matrix(m_network, m_free);
+        add_stiffness<Dim, Scalar>(m_network, m_network.rest_positions, Curvature::exact, held);
+        m_solver.reset();
+        m_is_held = detail::is_positive_definite<Scalar>(m_solver, held.matrix());
+    }
+
+    SpringNetwork<Dim, Scalar> m_network;
+    std::vector<int> m_clamped;
+    FreeNodes m_free;
+    CliqueMatrix<Dim, Scalar> m_full; ///< stiffness of all nodes at rest
+    SymmetricSolver<Scalar> m_solver; ///< holds the factor of that of the free ones
+    bool m_is_held = false;
+};
+
+/// `SpringNetwork` is a model of the concept StaticReference (`motion/record_static.hpp`).
+template <int Dim, std::floating_point Scalar>
+[[nodiscard]] NetworkStatics<Dim, Scalar> make_static_solver(const SpringNetwork<Dim, Scalar>& network) {
+    return NetworkStatics<Dim, Scalar>(network);
+}
+
+} // namespace springfit
