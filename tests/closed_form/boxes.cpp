@@ -63,6 +63,7 @@ TEST_CASE_TEMPLATE("braced cubes have the energy of the solid in every uniform s
         auto network = braced(mesh, bracing);
         const auto quarter = cubic_cell(mesh, network.springs, {.young = 100, .poisson = 0.25});
         CHECK(quarter.n_clamped == 0);
+        CHECK(quarter.caveat.empty());
         CHECK(quarter.n_without_cell == 0);
         network.stiffness = quarter.stiffness;
         for (int trial = 0; trial < 5; ++trial) {
@@ -116,6 +117,7 @@ TEST_CASE_TEMPLATE("Baudet's rectangles are exact at nu = 1/3, and in shear at a
         const double young = 1000;
         const auto form = baudet(mesh, network.springs, {.young = young, .poisson = nu, .thickness = h});
         CHECK(form.n_clamped == 0);
+        CHECK(form.caveat.empty() == (std::abs(nu - 1. / 3) < 1e-12));
         network.stiffness = form.stiffness;
         const auto mu = Scalar(young / (2 * (1 + nu)));
         const auto lambda = Scalar(young * nu / (1 - nu * nu));
@@ -157,6 +159,9 @@ TEST_CASE("cells that are no boxes, missing braces and long cells") {
     CHECK_THROWS_AS((void)cubic_cell(boxes, braced(boxes, Bracing::bodies).springs, solid), InvalidArgument);
     const auto faces = braced(boxes, Bracing::faces);
     CHECK(cubic_cell(boxes, faces.springs, solid).n_clamped == 4);
+    CHECK(cubic_cell(boxes, faces.springs, solid).caveat == "not exact where a negative value was set to 0");
+    CHECK(cubic_cell(boxes, faces.springs, {.young = 1, .poisson = 0.3}).caveat ==
+          "exact for Poisson's ratio 1/4 alone; in shear for any");
     boxes.nodes(0, 7) += 0.1;
     CHECK_THROWS_AS((void)cubic_cell(boxes, faces.springs, solid), InvalidArgument);
 }

@@ -38,7 +38,8 @@ template <int Dim, std::floating_point Scalar>
             add(diagonal, factor * sides.squaredNorm());
         }
     }
-    return detail::close(std::move(stiffness), touched);
+    return detail::close(std::move(stiffness), touched, detail::has_poisson(constants, 1. / 3),
+                         "exact for Poisson's ratio 1/3 alone; in shear for any");
 }
 
 } // namespace springfit

@@ -26,7 +26,8 @@ template <std::floating_point Scalar>
     constexpr int planes[12] = {0, 0, 0, 0, 1, 1, 2, 2, 1, 1, 2, 2}; // of the face diagonals: xy, xz, yz
     constexpr int axes[12] = {0, 1, 0, 1, 0, 1, 0, 1, 2, 2, 2, 2};   // of the edges
     constexpr int plane_axes[3][2] = {{0, 1}, {0, 2}, {1, 2}};
-    const Scalar mu = detail::constants<3, Hex8, Scalar>(solid).mu;
+    const auto constants = detail::constants<3, Hex8, Scalar>(solid);
+    const Scalar mu = constants.mu;
     require(mesh.n_cells() > 0, "mesh", "at least one cell", "none");
     const SpringLookup lookup(springs);
     const auto has = [&](const std::array<int, 2>& ends) {
@@ -42,7 +43,7 @@ template <std::floating_point Scalar>
     for (Index c = 0; c < mesh.n_cells(); ++c) {
         const Vector<3, Scalar> a2 = detail::box_sides(mesh, c).cwiseAbs2();
         const Scalar volume = std::sqrt(a2.prod());
-        if (!faces && !(a2.maxCoeff() - a2.minCoeff() < Scalar(2e-4) * a2.maxCoeff())) {
+        if (!faces && !detail::all_equal(a2)) {
             throw InvalidArgument("mesh", "cubes, where body diagonals are the only bracing",
                                   text("cell ", c, " with sides ", a2.cwiseSqrt().transpose()));
         }
@@ -72,7 +73,8 @@ template <std::floating_point Scalar>
             add(Hex8::diagonals[d], body);
         }
     }
-    return detail::close(std::move(stiffness), touched);
+    return detail::close(std::move(stiffness), touched, detail::has_poisson(constants, 0.25),
+                         "exact for Poisson's ratio 1/4 alone; in shear for any");
 }
 
 } // namespace springfit

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cmath>
+#include <string>
 
 #include <springfit/core/error.hpp>
 #include <springfit/core/types.hpp>
 #include <springfit/mesh/cell.hpp>
+#include <springfit/network/spring_network.hpp>
 
 namespace springfit {
 
@@ -17,13 +19,37 @@ struct IsotropicSolid {
     bool plane_strain = false; ///< of plane bodies, else plane stress; membranes are in plane stress
 };
 
-/// The stiffness that a closed form gives to each spring.
+/// What a closed form gives to each spring.
 template <std::floating_point Scalar>
 struct ClosedForm {
     Values<Scalar> stiffness; ///< k_e >= 0 [n_springs], N/m
     Index n_clamped = 0;      ///< values that came out negative and were set to 0
     Index n_without_cell = 0; ///< springs of no cell, as of a second ring: the formula says nothing, they get 0
+    /// l_e > 0 [n_springs], m, of a form whose springs pull or push at rest; empty: the distance of the ends.
+    Values<Scalar> rest_length{};
+    /// For what the form is exact, where that is not what was asked; empty where every uniform strain of this mesh and
+    /// this material has its exact energy.
+    std::string caveat{};
 };
+
+/// A closed form with the name of its function.
+template <std::floating_point Scalar>
+struct NamedClosedForm {
+    std::string name;
+    ClosedForm<Scalar> form;
+};
+
+/// Gives a network the stiffness of a closed form, and its rest lengths where it has any. Throws InvalidArgument for
+/// another number of springs.
+template <int Dim, std::floating_point Scalar>
+void apply(const ClosedForm<Scalar>& form, SpringNetwork<Dim, Scalar>& network) {
+    require(form.stiffness.size() == network.n_springs(), "form", text(network.n_springs(), " values, one per spring"),
+            form.stiffness.size());
+    network.stiffness = form.stiffness;
+    if (form.rest_length.size() > 0) {
+        network.rest_length = form.rest_length;
+    }
+}
 
 namespace detail {
 
@@ -59,9 +85,25 @@ ElasticConstants<Scalar> constants(const IsotropicSolid& solid) {
             static_cast<Scalar>(plane / (plane + 2 * mu))};
 }
 
-/// Sets negative values to 0 and counts them; `touched` marks the springs that a cell gave something to.
+/// Relative tolerance within which a shape is regular, or Poisson's ratio the one that a form is exact for.
+inline constexpr double exactness = 1e-4;
+
+/// True where the values, squared lengths or the like, are the same.
+template <class Squares>
+bool all_equal(const Squares& squares) {
+    return squares.maxCoeff() - squares.minCoeff() < 2 * exactness * squares.maxCoeff();
+}
+
 template <std::floating_point Scalar>
-ClosedForm<Scalar> close(Values<Scalar>&& stiffness, const std::vector<bool>& touched) {
+bool has_poisson(const ElasticConstants<Scalar>& constants, double poisson) {
+    return std::abs(static_cast<double>(constants.poisson) - poisson) < exactness;
+}
+
+/// Sets negative values to 0 and counts them; `touched` marks the springs that a cell gave something to. `caveat` is
+/// what holds unless the form is `exact` for what was asked.
+template <std::floating_point Scalar>
+ClosedForm<Scalar> close(Values<Scalar>&& stiffness, const std::vector<bool>& touched, bool exact,
+                         std::string_view caveat) {
     ClosedForm<Scalar> result{std::move(stiffness), 0, 0};
     for (Index e = 0; e < result.stiffness.size(); ++e) {
         if (result.stiffness(e) < 0) {
@@ -69,6 +111,11 @@ ClosedForm<Scalar> close(Values<Scalar>&& stiffness, const std::vector<bool>& to
             ++result.n_clamped;
         }
         result.n_without_cell += touched[static_cast<std::size_t>(e)] ? 0 : 1;
+    }
+    if (!exact) {
+        result.caveat = caveat;
+    } else if (result.n_clamped > 0) {
+        result.caveat = "not exact where a negative value was set to 0";
     }
     return result;
 }

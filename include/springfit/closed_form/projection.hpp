@@ -20,7 +20,7 @@ template <int Dim, std::floating_point Scalar, SimplexCell Cell>
 [[nodiscard]] ClosedForm<Scalar> projection(const Mesh<Dim, Scalar, Cell>& mesh, const NodePairs& springs,
                                             const IsotropicSolid& solid) {
     const auto constants = detail::constants<Dim, Cell, Scalar>(solid);
-    return detail::sum_over_simplices(mesh, springs, [&](const detail::SimplexEdge<Scalar>& edge) {
+    return detail::sum_over_simplices(mesh, springs, constants, [&](const detail::SimplexEdge<Scalar>& edge) {
         return edge.volume * ((constants.lambda + constants.mu) / edge.squared_length - constants.mu * edge.gradients);
     });
 }

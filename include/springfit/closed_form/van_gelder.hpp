@@ -18,7 +18,7 @@ template <int Dim, std::floating_point Scalar, SimplexCell Cell>
 [[nodiscard]] ClosedForm<Scalar> van_gelder(const Mesh<Dim, Scalar, Cell>& mesh, const NodePairs& springs,
                                             const IsotropicSolid& solid) {
     const auto constants = detail::constants<Dim, Cell, Scalar>(solid);
-    return detail::sum_over_simplices(mesh, springs, [&](const detail::SimplexEdge<Scalar>& edge) {
+    return detail::sum_over_simplices(mesh, springs, constants, [&](const detail::SimplexEdge<Scalar>& edge) {
         return constants.young * edge.volume / edge.squared_length;
     });
 }
@@ -36,7 +36,7 @@ template <int Dim, std::floating_point Scalar, SimplexCell Cell>
     const auto constants = detail::constants<Dim, Cell, Scalar>(solid);
     const Scalar e = constants.young;
     const Scalar nu = constants.poisson;
-    return detail::sum_over_simplices(mesh, springs, [&](const detail::SimplexEdge<Scalar>& edge) {
+    return detail::sum_over_simplices(mesh, springs, constants, [&](const detail::SimplexEdge<Scalar>& edge) {
         return e / (1 + nu) * edge.volume / edge.squared_length - e * nu / (1 - nu * nu) * edge.volume * edge.gradients;
     });
 }
