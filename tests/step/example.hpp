@@ -30,6 +30,27 @@ SpringNetwork<Dim, Scalar> random_network(Scalar damping, int cells = 2) {
     return network;
 }
 
+/// The same network with cells of stiffness between `least` and `most`.
+template <int Dim, std::floating_point Scalar>
+SpringNetwork<Dim, Scalar> random_network_with_cells(Scalar damping, Scalar least, Scalar most, int cells = 2) {
+    auto network = random_network<Dim, Scalar>(damping, cells);
+    if constexpr (Dim == 2) {
+        auto mesh = triangle_grid<Scalar>({cells + 1, cells}, {Scalar(1.5), Scalar(1)});
+        jitter(mesh, Scalar(0.2), 1);
+        add_volume_cells(network, mesh);
+    } else {
+        auto mesh = tetrahedron_grid<Scalar>({cells, cells, cells}, {Scalar(1), Scalar(1), Scalar(1)});
+        jitter(mesh, Scalar(0.2), 1);
+        add_volume_cells(network, mesh);
+    }
+    std::mt19937 random(12);
+    std::uniform_real_distribution<Scalar> value(least, most);
+    for (Index c = 0; c < network.n_cells(); ++c) {
+        network.volume_stiffness(c) = value(random);
+    }
+    return network;
+}
+
 /// A start far from rest: the body stretched, sheared and thrown.
 template <int Dim, std::floating_point Scalar>
 Scenario<Dim, Scalar> thrown(const SpringNetwork<Dim, Scalar>& network, Scalar size = Scalar(0.2)) {

@@ -97,6 +97,47 @@ TEST_CASE_TEMPLATE("implicit Euler is stable at any step and settles in the equi
     CHECK((statics.positions - network.rest_positions).norm() > Scalar(1e-3));
 }
 
+TEST_CASE_TEMPLATE("with cells of either sign implicit Euler goes where the explicit stepper goes", T,
+                   test::Space<2, double>, test::Space<3, double>) {
+    constexpr int dim = T::dimension;
+    for (const double least : {-3., 100.}) {
+        const auto network = test::random_network_with_cells<dim, double>(0.01, least, 300.);
+        const auto scenario = driven<dim, double>(network);
+        SymplecticEuler<dim, double> fine(network, {.step_fraction = 0.02, .max_substeps = 100000});
+        const auto exact = run(fine, scenario, 0.01, 10);
+        double error[2];
+        for (int level = 0; level < 2; ++level) {
+            ImplicitEuler<dim, double> stepper(network);
+            const int steps = 200 << level;
+            error[level] = (run(stepper, scenario, 0.1 / steps, steps).positions - exact.positions).norm();
+        }
+        CHECK(error[0] < 0.02 * exact.positions.norm());
+        CHECK(error[0] / error[1] > 1.8);
+        CHECK(error[0] / error[1] < 2.2);
+    }
+}
+
+TEST_CASE_TEMPLATE("with stiff cells large steps settle in the equilibrium", T, SPRINGFIT_TEST_SPACES) {
+    constexpr int dim = T::dimension;
+    using Scalar = typename T::Scalar;
+    const Scalar kappa = std::same_as<Scalar, float> ? 50 : 1000; // in single precision, as far as its digits go
+    const auto network = test::random_network_with_cells<dim, Scalar>(Scalar(0.01), kappa, 2 * kappa);
+    Scenario<dim, Scalar> scenario;
+    scenario.clamps.push_back({{0, 1, 2, 3}, {}});
+    scenario.gravity.push_back({Vector<dim, Scalar>::Unit(1) * -5, {}});
+    ImplicitEuler<dim, Scalar> stepper(network);
+    const auto settled = run(stepper, scenario, Scalar(0.2), 200);
+    const auto statics = equilibrium(network, scenario);
+    CHECK(statics.status == Status::converged);
+    CHECK(statics.stable);
+    CHECK((settled.positions - statics.positions).norm() < std::max(Scalar(1e-6), test::rounding<Scalar>(10000)));
+    CHECK((statics.positions - network.rest_positions).norm() > Scalar(1e-3));
+    auto springs_alone = network;
+    springs_alone.volume_stiffness.setZero();
+    const auto softer = equilibrium(springs_alone, scenario);
+    CHECK((softer.positions - network.rest_positions).norm() > (statics.positions - network.rest_positions).norm());
+}
+
 TEST_CASE("two masses under implicit Euler follow its own recurrence, damping included") {
     const auto network = test::two_masses<2, double>(100, 3);
     Scenario<2, double> scenario;

@@ -127,6 +127,66 @@ TEST_CASE_TEMPLATE("steps just below the bound stay bounded over thousands of st
     }
 }
 
+TEST_CASE_TEMPLATE("with cells the step is a bound where it is taken, at rest and deformed", T, test::Space<2, double>,
+                   test::Space<3, double>) {
+    constexpr int dim = T::dimension;
+    for (const auto& [least, most] : {std::pair(0., 30.), std::pair(-30., 30.), std::pair(1e4, 1e5)}) {
+        for (const double damping : {0., 0.005}) {
+            const auto network = test::random_network_with_cells<dim, double>(damping, least, most);
+            for (const auto& fixed : {std::vector<int>{}, std::vector<int>{0, 1, 5}}) {
+                const auto check = [&, &network = network](const Points<dim, double>& positions) {
+                    const double bound = stable_step_at<dim, double>(network, positions, fixed);
+                    const double limit = true_limit<dim>(network, positions, fixed);
+                    CHECK(bound <= limit);
+                    CHECK(limit <= 2.2 * bound);
+                };
+                check(network.rest_positions);
+                CHECK(stable_step(network, fixed) ==
+                      stable_step_at<dim, double>(network, network.rest_positions, fixed));
+                check(test::thrown<dim, double>(network, 0.3).initial_positions);
+                check(0.5 * network.rest_positions);
+                Points<dim, double> inverted = network.rest_positions;
+                inverted.row(0) *= -0.8;
+                check(inverted);
+            }
+        }
+    }
+}
+
+TEST_CASE_TEMPLATE("for one cell at rest the bound is the limit", T, SPRINGFIT_TEST_SPACES) {
+    constexpr int dim = T::dimension;
+    using Scalar = typename T::Scalar;
+    Points<dim, Scalar> rest = Points<dim, Scalar>::Zero(dim, dim + 1);
+    rest.template rightCols<dim>().diagonal() = Vector<dim, Scalar>::LinSpaced(1, 2);
+    auto network =
+        springs_from_list<dim, Scalar>(rest, NodePairs(2, 0), Values<Scalar>::LinSpaced(dim + 1, Scalar(1), Scalar(3)));
+    network.cells = Eigen::Matrix<int, dim + 1, 1>::LinSpaced(0, dim);
+    const SimplexCorners<dim, Scalar> corners = rest;
+    network.rest_volume = Values<Scalar>::Constant(1, signed_volume<dim, Scalar>(corners));
+    network.volume_stiffness = Values<Scalar>::Constant(1, 50);
+    const auto squares = volume_gradient<dim, Scalar>(corners).colwise().squaredNorm().transpose().eval();
+    const auto limit = [&](int first) { // of M^-1 kappa/V g g' with the nodes before `first` held
+        const Index n = dim + 1 - first;
+        const Scalar stiffness =
+            squares.tail(n).cwiseQuotient(network.mass.tail(n)).sum() * 50 / network.rest_volume(0);
+        return 2 / std::sqrt(stiffness);
+    };
+    CHECK(test::relative(stable_step(network), limit(0), limit(0)) < test::rounding<Scalar>());
+    CHECK(test::relative(stable_step(network, {0}), limit(1), limit(1)) < test::rounding<Scalar>());
+    network.volume_stiffness(0) = -50; // pulls away from rest: no step is stable against it, none shortens it
+    CHECK(std::isinf(stable_step(network)));
+    CHECK(std::isfinite(stable_step_at<dim, Scalar>(network, 2 * rest)));
+}
+
+TEST_CASE_TEMPLATE("with cells, steps just below the bound of all that is passed stay bounded", T,
+                   SPRINGFIT_TEST_SPACES) {
+    constexpr int dim = T::dimension;
+    using Scalar = typename T::Scalar;
+    const auto network = test::random_network_with_cells<dim, Scalar>(0, 1000, 10000);
+    CHECK(speed_when_thrown<dim, Scalar>(network, Scalar(0.5) * stable_step(network)) < 50);
+    CHECK(!(speed_when_thrown<dim, Scalar>(network, Scalar(2.5) * stable_step(network)) < 50));
+}
+
 TEST_CASE("nothing binds the step of a network without stiffness, and fixed nodes must exist") {
     const auto network = test::two_masses<2, double>(0, 0);
     CHECK(std::isinf(stable_step(network)));

@@ -11,8 +11,8 @@ namespace springfit {
 /// One explicit step of a network, in place: v += h a(x, v), then x += h v. This is the step of real-time use.
 ///
 /// `inverse_masses` `[n_nodes]` holds 1 / m_i, and 0 at clamped nodes: those keep their velocity. `external_forces` and
-/// the scratch array `forces` are `[Dim x n_nodes]`. Stable for h below `stable_step(network)`. O(springs), no
-/// allocation.
+/// the scratch array `forces` are `[Dim x n_nodes]`. Stable for h below `stable_step(network)`; with cells, below
+/// `stable_step_at(network, positions)`. O(springs + cells), no allocation.
 template <int Dim, std::floating_point Scalar>
 void symplectic_euler_step(const SpringNetwork<Dim, Scalar>& network, const Values<Scalar>& inverse_masses,
                            const Points<Dim, Scalar>& external_forces, Scalar h, Points<Dim, Scalar>& positions,
@@ -31,7 +31,8 @@ struct SymplecticEulerOptions {
     int max_substeps = 2000;            ///< most sub-steps in one call of `advance`; more end it with `iteration_limit`
 };
 
-/// Explicit stepper: `advance` takes equal sub-steps of symplectic Euler below the stable step.
+/// Explicit stepper: `advance` takes equal sub-steps of symplectic Euler below the stable step; with cells, whose share
+/// in it grows with the deformation, below that of the positions at the start of the call where it is the shorter one.
 ///
 /// Velocities run half a sub-step ahead of positions within a call and are brought back to the same time at its end
 /// (the leap-frog form), so positions and velocities of a frame are second order in the sub-step where there is no
@@ -61,12 +62,9 @@ public:
     [[nodiscard]] const Points<Dim, Scalar>& rest_positions() const { return m_network.rest_positions; }
     [[nodiscard]] const Values<Scalar>& masses() const { return m_network.mass; }
 
-    /// Sub-steps that `advance` takes for a step of dt; more than an int holds reads as the largest int.
-    [[nodiscard]] int n_substeps(Scalar dt) const {
-        const Scalar count = std::ceil(dt / m_longest_substep);
-        constexpr int most = std::numeric_limits<int>::max();
-        return count < static_cast<Scalar>(most) ? std::max(1, static_cast<int>(count)) : most;
-    }
+    /// Sub-steps that `advance` takes for a step of dt about the rest positions; more than an int holds reads as the
+    /// largest int.
+    [[nodiscard]] int n_substeps(Scalar dt) const { return n_substeps(dt, m_longest_substep); }
 
     [[nodiscard]] State<Dim, Scalar> start(const Scenario<Dim, Scalar>& scenario) const {
         return detail::start_network<Dim, Scalar>(m_network, scenario);
@@ -74,7 +72,12 @@ public:
 
     [[nodiscard]] Status advance(State<Dim, Scalar>& state, const Scenario<Dim, Scalar>& scenario, Scalar dt) {
         require(dt > 0 && std::isfinite(dt), "dt", "a positive time step", dt);
-        const int substeps = n_substeps(dt);
+        Scalar longest = m_longest_substep;
+        if (m_network.n_cells() > 0) {
+            longest =
+                std::min(longest, m_options.step_fraction * stable_step_at<Dim, Scalar>(m_network, state.positions));
+        }
+        const int substeps = n_substeps(dt, longest);
         if (substeps > m_options.max_substeps) {
             return Status::iteration_limit;
         }
@@ -118,6 +121,12 @@ public:
     }
 
 private:
+    [[nodiscard]] static int n_substeps(Scalar dt, Scalar longest) {
+        const Scalar count = std::ceil(dt / longest);
+        constexpr int most = std::numeric_limits<int>::max();
+        return count < static_cast<Scalar>(most) ? std::max(1, static_cast<int>(count)) : most;
+    }
+
     SpringNetwork<Dim, Scalar> m_network;
     SymplecticEulerOptions<Scalar> m_options;
     Scalar m_longest_substep;
