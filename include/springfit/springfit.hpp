@@ -7,6 +7,7 @@
 #include <springfit/closed_form/baudet.hpp>
 #include <springfit/closed_form/cubic_cell.hpp>
 #include <springfit/closed_form/lloyd.hpp>
+#include <springfit/closed_form/natsupakpong.hpp>
 #include <springfit/closed_form/projection.hpp>
 #include <springfit/closed_form/van_gelder.hpp>
 #include <springfit/core/version.hpp>

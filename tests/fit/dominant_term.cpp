@@ -11,7 +11,7 @@ using test::Random;
 TEST_CASE("the tiny bounded least squares is exact") {
     // Against every choice of active bounds, for small random problems with some near-singular ones among them.
     Random random(31);
-    detail::BoundedLeastSquares solver;
+    BoundedLeastSquares solver;
     for (int trial = 0; trial < 300; ++trial) {
         CAPTURE(trial);
         const Index n = 1 + trial % 5;

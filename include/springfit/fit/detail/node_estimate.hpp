@@ -4,8 +4,8 @@
 #include <chrono>
 
 #include <springfit/core/execution.hpp>
-#include <springfit/fit/detail/bounded_least_squares.hpp>
 #include <springfit/fit/problem.hpp>
+#include <springfit/solve/bounded_least_squares.hpp>
 
 namespace springfit {
 

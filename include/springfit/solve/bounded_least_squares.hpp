@@ -10,7 +10,7 @@
 
 #include <springfit/core/types.hpp>
 
-namespace springfit::detail {
+namespace springfit {
 
 /// Exact minimiser of a small strictly convex quadratic over a box, by a primal active set:
 ///
@@ -115,4 +115,4 @@ private:
     std::vector<bool> m_is_free;
 };
 
-} // namespace springfit::detail
+} // namespace springfit
