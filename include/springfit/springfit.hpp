@@ -5,6 +5,7 @@
 /// (`parallel/`) are included one by one.
 
 #include <springfit/closed_form/baudet.hpp>
+#include <springfit/closed_form/cauchy_split.hpp>
 #include <springfit/closed_form/cubic_cell.hpp>
 #include <springfit/closed_form/lloyd.hpp>
 #include <springfit/closed_form/natsupakpong.hpp>
