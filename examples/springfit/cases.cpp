@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include <springfit/motion/clamp_sets.hpp>
 #include <springfit/motion/load_cases.hpp>
 #include <springfit/motion/replay.hpp>
 #include <springfit/step/stable_step.hpp>
@@ -40,8 +41,6 @@ double light_damping(const Discretisation<Dim>& body) {
 
 template <int Dim>
 std::vector<int> clamped_nodes(const std::vector<std::string>& clamps, const Points<Dim, double>& rest_positions) {
-    const Vector<Dim, double> low = rest_positions.rowwise().minCoeff();
-    const Vector<Dim, double> high = rest_positions.rowwise().maxCoeff();
     std::vector<int> nodes;
     for (const std::string& clamp : clamps) {
         const std::string side = clamp.substr(0, clamp.find(':'));
@@ -60,16 +59,8 @@ std::vector<int> clamped_nodes(const std::vector<std::string>& clamps, const Poi
             require(used == number.size() && !number.empty() && part >= 0 && part < 1, "--clamp",
                     "a part of the extent in [0, 1) after the colon", clamp);
         }
-        const bool at_min = side.substr(2) == "min";
-        const double limit = part * (high(axis) - low(axis)) * (1 + 1e-12);
-        const std::size_t before = nodes.size();
-        for (Index i = 0; i < rest_positions.cols(); ++i) {
-            const double distance = at_min ? rest_positions(axis, i) - low(axis) : high(axis) - rest_positions(axis, i);
-            if (distance <= limit) {
-                nodes.push_back(static_cast<int>(i));
-            }
-        }
-        require(nodes.size() > before, "--clamp", "a side that holds nodes", text(clamp, ", which holds none"));
+        const std::vector<int> held = side_nodes(rest_positions, {axis, side.substr(2) == "max"}, part);
+        nodes.insert(nodes.end(), held.begin(), held.end());
     }
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());

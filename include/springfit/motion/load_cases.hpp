@@ -5,18 +5,9 @@
 #include <numbers>
 #include <random>
 
-#include <springfit/motion/scenario.hpp>
+#include <springfit/motion/body.hpp>
 
 namespace springfit {
-
-/// What load cases need to know of a body.
-template <int Dim, std::floating_point Scalar>
-struct Body {
-    Points<Dim, Scalar> rest_positions; ///< [Dim x n_nodes], m
-    Values<Scalar> masses;              ///< [n_nodes], kg
-    std::vector<int> surface;           ///< nodes that a hand can reach
-    std::vector<Clamp<Dim, Scalar>> clamps;
-};
 
 /// A family of loads.
 enum class LoadKind {

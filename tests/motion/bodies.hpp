@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <numeric>
+#include <random>
+
+#include <springfit/mesh/structured.hpp>
+#include <springfit/motion/body.hpp>
+#include <springfit/network/masses.hpp>
+
+namespace springfit::test {
+
+/// A box three times as long as wide, its inner nodes moved, not clamped.
+template <int Dim, class Scalar>
+[[nodiscard]] Body<Dim, Scalar> box_body() {
+    const auto body_of = [](auto mesh) {
+        jitter(mesh, Scalar(0.2), 3);
+        return Body<Dim, Scalar>{mesh.nodes, node_masses(mesh, Scalar(1000)), boundary_nodes(mesh), {}};
+    };
+    if constexpr (Dim == 2) {
+        return body_of(triangle_grid<Scalar>({9, 3}, {Scalar(3), Scalar(1)}));
+    } else {
+        return body_of(tetrahedron_grid<Scalar>({9, 3, 4}, {Scalar(3), Scalar(1), Scalar(1.2)}));
+    }
+}
+
+/// A flat sheet in space, 2 by 1; all of it is surface.
+template <class Scalar>
+[[nodiscard]] Body<3, Scalar> sheet_body() {
+    const auto plane = triangle_grid<Scalar>({8, 4}, {Scalar(2), Scalar(1)});
+    Body<3, Scalar> body{membrane(plane).nodes, node_masses(plane, Scalar(1)), {}, {}};
+    body.surface.resize(static_cast<std::size_t>(body.n_nodes()));
+    std::iota(body.surface.begin(), body.surface.end(), 0);
+    return body;
+}
+
+/// A body with its nodes in another order, and the way back.
+template <int Dim, class Scalar>
+struct Renumbered {
+    Body<Dim, Scalar> body;
+    std::vector<int> old; ///< number in the first body of each node of this one
+
+    [[nodiscard]] std::vector<int> back(std::vector<int> nodes) const {
+        for (int& node : nodes) {
+            node = old[static_cast<std::size_t>(node)];
+        }
+        std::sort(nodes.begin(), nodes.end());
+        return nodes;
+    }
+};
+
+template <int Dim, class Scalar>
+[[nodiscard]] Renumbered<Dim, Scalar> renumbered(const Body<Dim, Scalar>& body, unsigned seed) {
+    Renumbered<Dim, Scalar> result;
+    result.old.resize(static_cast<std::size_t>(body.n_nodes()));
+    std::iota(result.old.begin(), result.old.end(), 0);
+    std::mt19937 random(seed);
+    std::shuffle(result.old.begin(), result.old.end(), random);
+    std::vector<int> number(result.old.size());
+    for (std::size_t i = 0; i < result.old.size(); ++i) {
+        number[static_cast<std::size_t>(result.old[i])] = static_cast<int>(i);
+    }
+    result.body.rest_positions = body.rest_positions(Eigen::all, result.old);
+    result.body.masses = body.masses(result.old);
+    const auto renumber = [&](std::vector<int> nodes) {
+        for (int& node : nodes) {
+            node = number[static_cast<std::size_t>(node)];
+        }
+        return nodes;
+    };
+    result.body.surface = renumber(body.surface);
+    for (const auto& clamp : body.clamps) {
+        result.body.clamps.push_back({renumber(clamp.nodes), clamp.position});
+    }
+    return result;
+}
+
+} // namespace springfit::test
