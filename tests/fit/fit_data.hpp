@@ -98,7 +98,7 @@ void randomise(SpringNetwork<Dim, Scalar>& network, bool damped, Random& random)
     }
 }
 
-/// What the springs of a network do to its nodes, written down once more, in double.
+/// What the springs and cells of a network do to its nodes, written down once more, in double.
 template <int Dim, class Scalar>
 Points<Dim, Scalar> accelerations(const SpringNetwork<Dim, Scalar>& network, const Points<Dim, Scalar>& positions,
                                   const Points<Dim, Scalar>& velocities, const Points<Dim, Scalar>& forces) {
@@ -114,6 +114,19 @@ Points<Dim, Scalar> accelerations(const SpringNetwork<Dim, Scalar>& network, con
                                double(network.damping(e)) * (v.col(j) - v.col(i)).dot(n);
         total.col(i) += tension * n;
         total.col(j) -= tension * n;
+    }
+    for (Index c = 0; c < network.n_cells(); ++c) {
+        Eigen::Matrix<double, Dim + 1, Dim + 1> corners = Eigen::Matrix<double, Dim + 1, Dim + 1>::Ones();
+        for (int a = 0; a <= Dim; ++a) {
+            corners.template block<Dim, 1>(1, a) = x.col(network.cells(a, c));
+        }
+        const double volume = corners.determinant() / (Dim == 2 ? 2 : 6);
+        const double rest = double(network.rest_volume(c));
+        const Eigen::Matrix<double, Dim + 1, Dim> gradient = volume * corners.inverse().template rightCols<Dim>();
+        for (int a = 0; a <= Dim; ++a) {
+            total.col(network.cells(a, c)) -=
+                double(network.volume_stiffness(c)) * (volume / rest - 1) * gradient.row(a).transpose();
+        }
     }
     for (Index i = 0; i < total.cols(); ++i) {
         total.col(i) /= double(network.mass(i));
@@ -137,9 +150,8 @@ Motion<Dim, Scalar> random_motion(const SpringNetwork<Dim, Scalar>& network, con
         motion.positions.push_back(network.rest_positions + random.points<Dim, Scalar>(n, size));
         motion.velocities.push_back(random.points<Dim, Scalar>(n, 1));
         motion.external_forces.push_back(random.points<Dim, Scalar>(n, load));
-        motion.accelerations.push_back(accelerations<Dim, Scalar>(network, motion.positions.back(),
-                                                                  motion.velocities.back(),
-                                                                  motion.external_forces.back()));
+        motion.accelerations.push_back(accelerations<Dim, Scalar>(
+            network, motion.positions.back(), motion.velocities.back(), motion.external_forces.back()));
     }
     return motion;
 }
@@ -162,15 +174,14 @@ double relative_error(const Parameters& parameters, ParameterKind kind, const Va
 template <int Dim, CellType Cell>
 DenseMatrix<double> simplex_stiffness(const Mesh<Dim, double, Cell>& mesh, double young, double poisson) {
     const double mu = young / (2 * (1 + poisson));
-    const double lambda = Dim == 2 ? young * poisson / (1 - poisson * poisson)
-                                   : young * poisson / ((1 + poisson) * (1 - 2 * poisson));
+    const double lambda =
+        Dim == 2 ? young * poisson / (1 - poisson * poisson) : young * poisson / ((1 + poisson) * (1 - 2 * poisson));
     DenseMatrix<double> k = DenseMatrix<double>::Zero(Dim * mesh.n_nodes(), Dim * mesh.n_nodes());
     for (Index c = 0; c < mesh.n_cells(); ++c) {
         Eigen::Matrix<double, Dim + 1, Dim + 1> corners;
         corners << Eigen::Matrix<double, 1, Dim + 1>::Ones(), mesh.cell_nodes(c);
         const double volume = std::abs(corners.determinant()) / (Dim == 2 ? 2 : 6);
-        const Eigen::Matrix<double, Dim + 1, Dim> gradients =
-            corners.inverse().template rightCols<Dim>();
+        const Eigen::Matrix<double, Dim + 1, Dim> gradients = corners.inverse().template rightCols<Dim>();
         for (int a = 0; a <= Dim; ++a) {
             for (int b = 0; b <= Dim; ++b) {
                 const Vector<Dim, double> ga = gradients.row(a);

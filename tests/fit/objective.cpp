@@ -151,8 +151,8 @@ TEST_CASE_TEMPLATE("frame by frame is the same as a motion, on any number of thr
     AccelerationObjective<dim, Scalar> frames(body.network, options, backwards);
     whole.add(motion);
     for (std::size_t t = 0; t < motion.times.size(); ++t) {
-        frames.add_frame(motion.positions[t], motion.velocities[t], motion.accelerations[t],
-                         motion.external_forces[t], motion.clamped);
+        frames.add_frame(motion.positions[t], motion.velocities[t], motion.accelerations[t], motion.external_forces[t],
+                         motion.clamped);
     }
     const FitProblem a = whole.problem();
     const FitProblem b = frames.problem();
@@ -162,6 +162,44 @@ TEST_CASE_TEMPLATE("frame by frame is the same as a motion, on any number of thr
     // More frames may follow.
     whole.add(motion);
     CHECK(test::relative_difference(whole.problem().objective.linear(), 2 * a.objective.linear()) < 1e-13);
+}
+
+TEST_CASE_TEMPLATE("cells act as the network gives them: its springs are found, without the cells they are not", T,
+                   SPRINGFIT_TEST_SPACES) {
+    constexpr int dim = T::dimension;
+    using Scalar = typename T::Scalar;
+    Random random(24);
+    auto body = test::bodies<dim, Scalar>().front();
+    auto& network = body.network;
+    test::randomise(network, true, random);
+    if constexpr (dim == 2) {
+        auto mesh = triangle_grid<Scalar>({5, 4}, {Scalar(1.25), Scalar(1)});
+        jitter(mesh, Scalar(0.3), 11u);
+        add_volume_cells(network, mesh);
+    } else {
+        auto mesh = tetrahedron_grid<Scalar>({2, 2, 2}, {Scalar(0.5), Scalar(0.5), Scalar(0.5)});
+        jitter(mesh, Scalar(0.2), 13u);
+        add_volume_cells(network, mesh);
+    }
+    for (Scalar& kappa : network.volume_stiffness) {
+        kappa = static_cast<Scalar>(random(-1000, 3000));
+    }
+    const auto motion = test::random_motion<dim, Scalar>(network, body.clamped, 40, random);
+    const auto error_with = [&](const SpringNetwork<dim, Scalar>& known) {
+        const FitProblem problem = acceleration_problem<dim, Scalar>(known, {motion});
+        const DenseMatrix<double> lower = problem.objective.hessian();
+        const Values<double> theta =
+            DenseMatrix<double>(lower.selfadjointView<Eigen::Lower>())
+                .ldlt()
+                .solve(-problem.objective.gradient(Values<double>::Zero(problem.n_unknowns())));
+        auto found = network;
+        apply(problem, theta, found);
+        return test::relative_error(problem.parameters, ParameterKind::stiffness, found.stiffness, network.stiffness);
+    };
+    CHECK(error_with(network) < (std::same_as<Scalar, float> ? 1e-4 : 1e-9));
+    auto unknown = network;
+    unknown.volume_stiffness.setZero();
+    CHECK(error_with(unknown) > 0.1);
 }
 
 TEST_CASE_TEMPLATE("what cannot be fitted is refused", T, SPRINGFIT_TEST_SPACES) {
@@ -205,9 +243,8 @@ TEST_CASE_TEMPLATE("what cannot be fitted is refused", T, SPRINGFIT_TEST_SPACES)
     refused_options([](auto& o) { o.parameters.stiffness.lower = std::nan(""); });
     refused_options([](auto& o) { o.parameters.stiffness.ties = {1, 2}; });
     refused_options([](auto& o) { o.parameters.stiffness.prior = Values<double>::Ones(3); });
-    refused_options([&](auto& o) {
-        o.parameters.stiffness.prior = Values<double>::Constant(network.n_springs(), std::nan(""));
-    });
+    refused_options(
+        [&](auto& o) { o.parameters.stiffness.prior = Values<double>::Constant(network.n_springs(), std::nan("")); });
     refused_options([](auto& o) { o.parameters.ridge = -1; });
     refused_options([](auto& o) { o.parameters.stiffness.fit = false; });
     refused_options([](auto& o) { o.identified = 0; });

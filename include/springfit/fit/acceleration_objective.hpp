@@ -8,6 +8,7 @@
 #include <springfit/fit/detail/frame_batch.hpp>
 #include <springfit/fit/problem.hpp>
 #include <springfit/motion/motion.hpp>
+#include <springfit/network/volume.hpp>
 
 namespace springfit {
 
@@ -32,9 +33,10 @@ struct AccelerationOptions {
 ///     Phi(theta) = sum_motions W sum_t sum_{i free} w_i | a_i(t) - a_i^MSM(x(t), v(t); theta) |^2
 ///     m_i a_i^MSM = f_i + sum_e [ k_e (L - l_e) n + c_e ((v_j - v_i) . n) n - q_e n ]
 ///
-/// Nodes clamped in a motion do not count in it. Frames are read once and not kept: memory is about
-/// 4 (unknowns at a node)^2 bytes per node and 32 frames of the motion. Cost per frame: sum over nodes of unknowns^2.
-/// Sums are in double whatever the Scalar of the data, and do not depend on the number of threads.
+/// f_i are the external forces and those of the network's cells, whose volume stiffness is taken as given. Nodes
+/// clamped in a motion do not count in it. Frames are read once and not kept: memory is about 4 (unknowns at a node)^2
+/// bytes per node and 32 frames of the motion. Cost per frame: sum over nodes of unknowns^2. Sums are in double whatever
+/// the Scalar of the data, and do not depend on the number of threads.
 template <int Dim, std::floating_point Scalar>
     requires SpatialDimension<Dim>
 class AccelerationObjective {
@@ -53,6 +55,9 @@ public:
                 "node_weights", "finite values not below 0", "another value");
         m_parameters = Parameters(network, options.parameters);
         m_mass = network.mass.template cast<double>();
+        m_cells.cells = network.cells;
+        m_cells.rest_volume = network.rest_volume.template cast<double>();
+        m_cells.volume_stiffness = network.volume_stiffness.template cast<double>();
         m_root_weight.resize(network.n_nodes());
         for (Index i = 0; i < network.n_nodes(); ++i) {
             const double own = options.node_weights.size() > 0 ? options.node_weights(i) : 1.;
@@ -126,7 +131,11 @@ private:
     void push(const Points<Dim, Scalar>& positions, const Points<Dim, Scalar>& velocities,
               const Points<Dim, Scalar>& accelerations, const Points<Dim, Scalar>& forces,
               const Values<double>& root_weights) {
-        m_batch.push(positions, velocities, accelerations, forces, root_weights);
+        m_forces = forces.template cast<double>();
+        if (m_cells.n_cells() > 0) {
+            add_volume_forces<Dim, double>(m_cells, positions.template cast<double>(), m_forces);
+        }
+        m_batch.push(positions, velocities, accelerations, m_forces, root_weights);
         if (m_batch.full()) {
             flush();
         }
@@ -143,6 +152,8 @@ private:
     Values<double> m_mass;
     Values<double> m_root_weight; ///< sqrt(w_i) / m_i
     Values<double> m_stiffness, m_rest_length, m_damping; ///< per spring; known values, 0 where fitted
+    SpringNetwork<Dim, double> m_cells; ///< the cells alone
+    Points<Dim, double> m_forces;       ///< of the frame added last, external and of the cells
     bool m_uses_velocity = false;
     std::vector<bool> m_seen_free; ///< nodes that some motion leaves free
 

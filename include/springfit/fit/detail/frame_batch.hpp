@@ -28,9 +28,10 @@ public:
     [[nodiscard]] int size() const { return m_size; }
     [[nodiscard]] bool full() const { return m_size == lanes; }
 
-    /// Adds a frame: what the springs must give is `m_i a_i - f_i`, and its square counts `root_weights(i)^2`.
+    /// Adds a frame: what the springs must give is `m_i a_i - f_i`, f_i all other forces, and its square counts
+    /// `root_weights(i)^2`.
     void push(const Points<Dim, Scalar>& positions, const Points<Dim, Scalar>& velocities,
-              const Points<Dim, Scalar>& accelerations, const Points<Dim, Scalar>& forces,
+              const Points<Dim, Scalar>& accelerations, const Points<Dim, double>& forces,
               const Values<double>& root_weights) {
         Frame& frame = m_frames[static_cast<std::size_t>(m_size++)];
         frame.positions = positions;
@@ -50,8 +51,7 @@ public:
                 for (int d = 0; d < Dim; ++d) {
                     const Index at = i * rows + d * lanes + lane;
                     m_positions(at) = static_cast<double>(frame.positions(d, i));
-                    m_loads(at) = masses(i) * static_cast<double>(frame.accelerations(d, i)) -
-                                  static_cast<double>(frame.forces(d, i));
+                    m_loads(at) = masses(i) * static_cast<double>(frame.accelerations(d, i)) - frame.forces(d, i);
                     if (m_velocities.size() > 0) {
                         m_velocities(at) = static_cast<double>(frame.velocities(d, i));
                     }
@@ -74,7 +74,8 @@ public:
 
 private:
     struct Frame {
-        Points<Dim, Scalar> positions, velocities, accelerations, forces;
+        Points<Dim, Scalar> positions, velocities, accelerations;
+        Points<Dim, double> forces;
         Values<double> root_weights;
     };
 
