@@ -7,6 +7,7 @@
 #include <springfit/closed_form/baudet.hpp>
 #include <springfit/closed_form/cauchy_split.hpp>
 #include <springfit/closed_form/cubic_cell.hpp>
+#include <springfit/closed_form/delingette.hpp>
 #include <springfit/closed_form/lloyd.hpp>
 #include <springfit/closed_form/natsupakpong.hpp>
 #include <springfit/closed_form/projection.hpp>
@@ -29,6 +30,8 @@
 #include <springfit/score/motion_error.hpp>
 #include <springfit/solve/clique_matrix.hpp>
 #include <springfit/solve/newton.hpp>
+#include <springfit/step/biquadratic_equilibrium.hpp>
+#include <springfit/step/biquadratic_euler.hpp>
 #include <springfit/step/equilibrium.hpp>
 #include <springfit/step/implicit_euler.hpp>
 #include <springfit/step/symplectic_euler.hpp>

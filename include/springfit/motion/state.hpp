@@ -53,7 +53,7 @@ concept Stepper = requires(S stepper, const Scenario<S::dimension, typename S::S
 
 /// A model whose motion can be recorded: `make_stepper(model)` gives the stepper that moves it.
 ///
-/// Models of the concept: `fem::Model`, `SpringNetwork`, and `UserReference` for any callable.
+/// Models of the concept: `fem::Model`, `SpringNetwork`, `BiquadraticNetwork`, and `UserReference` for any callable.
 template <class R>
 concept Reference = requires(const R& reference) {
     { make_stepper(reference) } -> Stepper;

@@ -58,9 +58,9 @@ bool is_finite(const State<Dim, Scalar>& state) {
     return state.positions.allFinite() && state.velocities.allFinite() && state.accelerations.allFinite();
 }
 
-/// The state of a network at time 0; clamped nodes start without acceleration.
-template <int Dim, std::floating_point Scalar>
-State<Dim, Scalar> start_network(const SpringNetwork<Dim, Scalar>& network, const Scenario<Dim, Scalar>& scenario) {
+/// The state of a network (springs or others that `compute_accelerations` knows) at time 0; clamped nodes start without acceleration.
+template <int Dim, std::floating_point Scalar, class Network>
+State<Dim, Scalar> start_network(const Network& network, const Scenario<Dim, Scalar>& scenario) {
     validate(scenario, network.n_nodes());
     State<Dim, Scalar> state;
     state.positions = initial_positions(scenario, network.rest_positions);
@@ -74,8 +74,8 @@ State<Dim, Scalar> start_network(const SpringNetwork<Dim, Scalar>& network, cons
 }
 
 /// Sets the accelerations of a state from its positions and velocities; clamped nodes: change of velocity over time.
-template <int Dim, std::floating_point Scalar>
-void finish_frame(const SpringNetwork<Dim, Scalar>& network, const Points<Dim, Scalar>& external,
+template <int Dim, std::floating_point Scalar, class Network>
+void finish_frame(const Network& network, const Points<Dim, Scalar>& external,
                   const std::vector<int>& clamped, const State<Dim, Scalar>& before, State<Dim, Scalar>& state) {
     compute_accelerations<Dim, Scalar>(network, state.positions, state.velocities, external, state.accelerations);
     for (int node : clamped) {
