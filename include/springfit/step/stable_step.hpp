@@ -21,11 +21,11 @@ namespace springfit {
 /// 2 / sqrt(max a). For a spring alone it is exact; in meshes the true limit is up to about twice as long. Springs
 /// hold this at every deformation.
 ///
-/// A cell of kappa > 0 with w_a = |dV/dx_a| and their mean over two ends w = sum_a w_a / 2 adds kappa / V_c w_a w to d_a
-/// and is one more row, a = sum_a w_a / w d_a / m_a, b = sum_a w_a / w g_a / m_a. Away from its rest volume the second
-/// derivative of V adds max_i p_i / m_i to every a, p_i the sum over the cells at i of
-/// |kappa (V - V_c) / V_c| sum_b |d^2 V / dx_i dx_b|. For one cell at rest it is exact; the cells' part grows with the
-/// deformation, as that of the springs does not.
+/// A cell of kappa > 0 with w_a = |dV/dx_a| and w = sum_a w_a / 2 (so that it counts as two ends) adds kappa / V_c w_a
+/// w to d_a and is one more row, a = sum_a w_a / w d_a / m_a, b = sum_a w_a / w g_a / m_a. Away from its rest volume
+/// the second derivative of V adds max_i p_i / m_i to every a, p_i the sum over the cells at i of |kappa (V - V_c) /
+/// V_c| sum_b |d^2 V / dx_i dx_b|. For one cell at rest it is exact; the cells' part grows with the deformation, as
+/// that of the springs does not.
 ///
 /// The ends in `fixed` do not move: their d / m and g / m count as 0. Infinite where nothing binds the step.
 /// O(springs + cells).
