@@ -81,9 +81,18 @@ ReferenceCases<Dim> record_cases(const FemReference<Dim>& reference, const Discr
     Body<Dim, double> loaded{rest, body.network.mass, {}, {{held, {}}}};
     std::set_difference(body.surface.begin(), body.surface.end(), held.begin(), held.end(),
                         std::back_inserter(loaded.surface)); // a load on held nodes moves nothing
-    auto cases = random_loads(loaded, {.training = options.training_cases.value_or(6),
-                                       .held_out = options.held_out_cases.value_or(3),
-                                       .seed = options.seed});
+    const int n_held_out = options.held_out_cases.value_or(3);
+    require(n_held_out >= 1, "--held-out-cases", "at least one load case", n_held_out);
+    const auto split = random_load_cases(loaded, {.training = options.training_cases.value_or(6),
+                                                  .clamps = 1,
+                                                  .held_out_loads = 1,
+                                                  .held_out_kinds = n_held_out - 1,
+                                                  .held_out_clamp = 0,
+                                                  .seed = options.seed});
+    struct {
+        std::vector<Scenario<Dim, double>> training, held_out;
+    } cases{split.training, split.held_out_loads};
+    cases.held_out.insert(cases.held_out.end(), split.held_out_kinds.begin(), split.held_out_kinds.end());
 
     // Every case is scaled to the same largest displacement; the slowest answer sets the time.
     std::vector<Scenario<Dim, double>> all = cases.training;
@@ -99,7 +108,8 @@ ReferenceCases<Dim> record_cases(const FemReference<Dim>& reference, const Discr
     std::size_t next = 0;
     for (auto* set : {&cases.training, &cases.held_out}) {
         for (auto& scenario : *set) {
-            set_loading(scenario, deformation * size / responses[next++].largest_displacement, amplitude);
+            scale_loads(scenario, deformation * size / responses[next++].largest_displacement);
+            set_amplitude(scenario, amplitude);
         }
     }
 

@@ -57,14 +57,15 @@ template <int Dim, std::floating_point Scalar>
 }
 
 struct ClampSetOptions {
-    int training = 3;   ///< sets to train under, the body's own first, >= 1
-    double part = 0.05; ///< depth of a side, part of the extent, in [0, 1)
+    int training = 3;     ///< sets to train under, the body's own first, >= 1
+    bool held_out = true; ///< one more set, that training never sees
+    double part = 0.05;   ///< depth of a side, part of the extent, in [0, 1)
 };
 
 /// Node sets to clamp a body at, each on its own.
 struct ClampSets {
     std::vector<std::vector<int>> training;
-    std::vector<int> held_out; ///< one that training never sees
+    std::vector<int> held_out; ///< empty where none was asked for
 };
 
 namespace detail {
@@ -176,7 +177,7 @@ private:
 } // namespace detail
 
 /// Different ways to clamp a body: its own clamps (where it has any), then sides of its bounding box, then patches of
-/// its surface, each time the one whose centre is farthest from those before. The last one is held out.
+/// its surface, each time the one whose centre is farthest from those before. The last one is the held-out one.
 ///
 /// Every set but the body's own leaves no rigid motion (`holds_rigidly`), holds at most half of the nodes, and shares
 /// with no other more than half of the nodes that both hold together. The result goes by positions, not by node
@@ -189,21 +190,25 @@ template <int Dim, std::floating_point Scalar>
     detail::ClampPicker<Dim, Scalar> picker(body, static_cast<Scalar>(options.part));
     Scenario<Dim, Scalar> own;
     own.clamps = body.clamps;
-    ClampSets sets;
-    std::vector<int> nodes = clamped_nodes(own, body.n_nodes());
-    for (int s = 0; s <= options.training; ++s) {
-        if (s > 0 || nodes.empty()) {
+    std::vector<std::vector<int>> sets;
+    const int n_sets = options.training + (options.held_out ? 1 : 0);
+    for (int s = 0; s < n_sets; ++s) {
+        std::vector<int> nodes = s == 0 ? clamped_nodes(own, body.n_nodes()) : std::vector<int>{};
+        if (nodes.empty()) {
             nodes = picker.next();
         }
         require(!nodes.empty(), "training",
-                text("at most ", s - 1, " clamp sets, all that the body has besides one held out"), options.training);
+                text("no more than the ", s, " clamp sets of the body, the held-out one included"), options.training);
         picker.take(nodes);
-        if (s < options.training) {
-            sets.training.push_back(nodes);
-        }
+        sets.push_back(std::move(nodes));
     }
-    sets.held_out = std::move(nodes);
-    return sets;
+    ClampSets result;
+    if (options.held_out) {
+        result.held_out = std::move(sets.back());
+        sets.pop_back();
+    }
+    result.training = std::move(sets);
+    return result;
 }
 
 } // namespace springfit
