@@ -11,6 +11,7 @@
 #include <springfit/closed_form/lloyd.hpp>
 #include <springfit/closed_form/natsupakpong.hpp>
 #include <springfit/closed_form/projection.hpp>
+#include <springfit/closed_form/san_vicente.hpp>
 #include <springfit/closed_form/van_gelder.hpp>
 #include <springfit/core/version.hpp>
 #include <springfit/fem/dynamics.hpp>

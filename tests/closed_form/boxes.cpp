@@ -1,59 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "braced.hpp"
 #include "tolerance.hpp"
 
 #include <springfit/closed_form/baudet.hpp>
 #include <springfit/closed_form/cubic_cell.hpp>
-#include <springfit/mesh/structured.hpp>
 
 using namespace springfit;
-
-namespace {
-
-/// Energy of springs under a small uniform strain: sum 1/2 k (n' eps n l)^2.
-template <int Dim, class Scalar>
-Scalar spring_energy(const SpringNetwork<Dim, Scalar>& network, const Eigen::Matrix<Scalar, Dim, Dim>& strain) {
-    Scalar energy = 0;
-    for (Index e = 0; e < network.n_springs(); ++e) {
-        const Vector<Dim, Scalar> r =
-            network.rest_positions.col(network.springs(1, e)) - network.rest_positions.col(network.springs(0, e));
-        const Scalar stretch = r.dot(strain * r) / r.norm();
-        energy += network.stiffness(e) * stretch * stretch / 2;
-    }
-    return energy;
-}
-
-/// lambda/2 tr^2 + mu eps : eps per volume.
-template <int Dim, class Scalar>
-Scalar elastic_density(const Eigen::Matrix<Scalar, Dim, Dim>& strain, Scalar lambda, Scalar mu) {
-    return lambda / 2 * strain.trace() * strain.trace() + mu * strain.squaredNorm();
-}
-
-template <int Dim, class Scalar>
-Eigen::Matrix<Scalar, Dim, Dim> random_strain() {
-    const Eigen::Matrix<Scalar, Dim, Dim> any = Eigen::Matrix<Scalar, Dim, Dim>::Random();
-    return any + any.transpose();
-}
-
-enum class Bracing { faces, bodies, both };
-
-template <class Scalar>
-SpringNetwork<3, Scalar> braced(const Mesh<3, Scalar, Hex8>& mesh, Bracing bracing) {
-    const Index per_cell[] = {12, 4, 16};
-    const Index from[] = {0, 12, 0};
-    std::vector<std::array<int, 2>> pairs;
-    for (Index c = 0; c < mesh.n_cells(); ++c) {
-        for (const auto& edge : Hex8::edges) {
-            pairs.push_back({mesh.cells(edge[0], c), mesh.cells(edge[1], c)});
-        }
-        for (Index d = 0; d < per_cell[static_cast<int>(bracing)]; ++d) {
-            const auto& diagonal = Hex8::diagonals[static_cast<std::size_t>(from[static_cast<int>(bracing)] + d)];
-            pairs.push_back({mesh.cells(diagonal[0], c), mesh.cells(diagonal[1], c)});
-        }
-    }
-    return springs_from_list<3, Scalar>(mesh.nodes, detail::sorted_unique_pairs(pairs));
-}
-
-} // namespace
+using test::braced;
+using test::Bracing;
+using test::elastic_density;
+using test::random_strain;
+using test::spring_energy;
 
 TEST_CASE_TEMPLATE("braced cubes have the energy of the solid in every uniform strain at nu = 1/4, in shear at any nu",
                    Scalar, float, double) {
@@ -140,6 +97,52 @@ TEST_CASE_TEMPLATE("Baudet's rectangles are exact at nu = 1/3, and in shear at a
     CHECK((cloth.stiffness - form.stiffness).norm() < 1e-14);
 }
 
+TEST_CASE("Baudet's cells: the stress of tension is right where the contraction is the material's") {
+    const double e = 1e-6;
+    const auto rectangles = quad_grid<double>({2, 3}, {0.9, 1.});
+    auto sheet = springs_along_edges(rectangles, {.diagonals = true});
+    const auto boxes = hex_grid<double>({2, 2, 1}, {0.62, 0.58, 0.3});
+    for (const double nu : {0.1, 0.25, 0.45}) {
+        const auto stress = [&]<int Dim>(const SpringNetwork<Dim, double>& network, int axis, double volume) {
+            // The energy is 1/2 eps'C eps: its slope along the axis, at the material's contraction.
+            Eigen::Matrix<double, Dim, Dim> strain = -nu * Eigen::Matrix<double, Dim, Dim>::Identity();
+            strain(axis, axis) = 1;
+            auto more = strain;
+            auto less = strain;
+            more(axis, axis) += e;
+            less(axis, axis) -= e;
+            return (spring_energy<Dim, double>(network, more) - spring_energy<Dim, double>(network, less)) /
+                   (2 * e * volume);
+        };
+        const IsotropicSolid solid{.young = 100, .poisson = nu, .thickness = 0.1};
+        apply(baudet(rectangles, sheet.springs, solid), sheet);
+        for (int axis = 0; axis < 2; ++axis) {
+            CHECK(test::relative(stress(sheet, axis, 0.9 * 0.1), 100., 100.) < 1e-9);
+        }
+        for (const Bracing bracing : {Bracing::faces, Bracing::both}) {
+            auto network = braced(boxes, bracing);
+            const auto form = baudet(boxes, network.springs, solid);
+            CHECK(form.n_clamped == 0);
+            apply(form, network);
+            for (int axis = 0; axis < 3; ++axis) {
+                CHECK(test::relative(stress(network, axis, 0.62 * 0.58 * 0.3), 100., 100.) < 1e-9);
+            }
+            Eigen::Matrix3d shear = random_strain<3, double>();
+            shear.diagonal().setZero();
+            const double expected = 0.62 * 0.58 * 0.3 * elastic_density<3, double>(shear, 0, 100 / (2 * (1 + nu)));
+            CHECK(test::relative(spring_energy<3, double>(network, shear), expected, expected) < 1e-12);
+        }
+    }
+    // At nu = 1/4 the exact case is that of cubic_cell.
+    const auto springs = braced(boxes, Bracing::both).springs;
+    const IsotropicSolid quarter{.young = 100, .poisson = 0.25};
+    const auto form = baudet(boxes, springs, quarter);
+    CHECK(form.caveat.empty());
+    CHECK(test::relative_difference(form.stiffness, cubic_cell(boxes, springs, quarter).stiffness) < 1e-13);
+    CHECK(baudet(boxes, springs, {.young = 100, .poisson = 0.3}).caveat ==
+          "exact for Poisson's ratio 1/4 alone; in shear for any");
+}
+
 TEST_CASE("cells that are no boxes, missing braces and long cells") {
     const IsotropicSolid solid{.young = 1, .poisson = 0.25};
     auto quads = quad_grid<double>({2, 2}, {1., 1.});
@@ -163,5 +166,9 @@ TEST_CASE("cells that are no boxes, missing braces and long cells") {
     CHECK(cubic_cell(boxes, faces.springs, {.young = 1, .poisson = 0.3}).caveat ==
           "exact for Poisson's ratio 1/4 alone; in shear for any");
     boxes.nodes(0, 7) += 0.1;
-    CHECK_THROWS_AS((void)cubic_cell(boxes, faces.springs, solid), InvalidArgument);
+    CHECK_THROWS_WITH_AS(
+        (void)cubic_cell(boxes, faces.springs, solid),
+        "mesh: expected box-shaped cells (natsupakpong takes any hexahedra), found hexahedron 0 of another shape",
+        InvalidArgument);
+    CHECK_THROWS_AS((void)baudet(boxes, faces.springs, solid), InvalidArgument);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <springfit/closed_form/detail/box_cell.hpp>
+#include <springfit/closed_form/detail/braced_box.hpp>
 
 namespace springfit {
 
@@ -23,58 +23,8 @@ namespace springfit {
 template <std::floating_point Scalar>
 [[nodiscard]] ClosedForm<Scalar> cubic_cell(const Mesh<3, Scalar, Hex8>& mesh, const NodePairs& springs,
                                             const IsotropicSolid& solid) {
-    constexpr int planes[12] = {0, 0, 0, 0, 1, 1, 2, 2, 1, 1, 2, 2}; // of the face diagonals: xy, xz, yz
-    constexpr int axes[12] = {0, 1, 0, 1, 0, 1, 0, 1, 2, 2, 2, 2};   // of the edges
-    constexpr int plane_axes[3][2] = {{0, 1}, {0, 2}, {1, 2}};
     const auto constants = detail::constants<3, Hex8, Scalar>(solid);
-    const Scalar mu = constants.mu;
-    require(mesh.n_cells() > 0, "mesh", "at least one cell", "none");
-    const SpringLookup lookup(springs);
-    const auto has = [&](const std::array<int, 2>& ends) {
-        return lookup.find(mesh.cells(ends[0], 0), mesh.cells(ends[1], 0)) >= 0;
-    };
-    const bool faces = has(Hex8::diagonals.front());
-    const bool bodies = has(Hex8::diagonals.back());
-    require(faces || bodies, "springs", "face or body diagonals", "neither");
-    const Scalar body_share = !bodies ? Scalar(0) : faces ? Scalar(0.5) : Scalar(1);
-
-    Values<Scalar> stiffness = Values<Scalar>::Zero(springs.cols());
-    std::vector<bool> touched(static_cast<std::size_t>(springs.cols()), false);
-    for (Index c = 0; c < mesh.n_cells(); ++c) {
-        const Vector<3, Scalar> a2 = detail::box_sides(mesh, c).cwiseAbs2();
-        const Scalar volume = std::sqrt(a2.prod());
-        if (!faces && !detail::all_equal(a2)) {
-            throw InvalidArgument("mesh", "cubes, where body diagonals are the only bracing",
-                                  text("cell ", c, " with sides ", a2.cwiseSqrt().transpose()));
-        }
-        const Scalar most = std::max({a2(0) * a2(1), a2(0) * a2(2), a2(1) * a2(2)});
-        const Scalar body = body_share * mu * a2.sum() * volume / (4 * most);
-        Scalar face[3];
-        Vector<3, Scalar> edge = (3 * mu * volume / 4) * a2.cwiseInverse() - body / a2.sum() * a2;
-        for (int plane = 0; plane < 3; ++plane) {
-            const Scalar p2 = a2(plane_axes[plane][0]);
-            const Scalar q2 = a2(plane_axes[plane][1]);
-            face[plane] = faces ? (p2 + q2) * (mu * volume / (4 * p2 * q2) - body / a2.sum()) : Scalar(0);
-            edge(plane_axes[plane][0]) -= p2 * face[plane] / (p2 + q2);
-            edge(plane_axes[plane][1]) -= q2 * face[plane] / (p2 + q2);
-        }
-        const auto add = [&](const std::array<int, 2>& ends, Scalar value) {
-            const int spring = detail::spring_on_edge(lookup, mesh.cells(ends[0], c), mesh.cells(ends[1], c));
-            stiffness(spring) += value;
-            touched[static_cast<std::size_t>(spring)] = true;
-        };
-        for (std::size_t e = 0; e < 12; ++e) {
-            add(Hex8::edges[e], edge(axes[e]));
-            if (faces) {
-                add(Hex8::diagonals[e], face[planes[e]]);
-            }
-        }
-        for (std::size_t d = 12; bodies && d < 16; ++d) {
-            add(Hex8::diagonals[d], body);
-        }
-    }
-    return detail::close(std::move(stiffness), touched, detail::has_poisson(constants, 0.25),
-                         "exact for Poisson's ratio 1/4 alone; in shear for any");
+    return detail::braced_boxes(mesh, springs, constants.mu, Scalar(3), detail::has_poisson(constants, 0.25));
 }
 
 } // namespace springfit
