@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <springfit/fit/detail/spring_block.hpp>
+
+namespace springfit::detail {
+
+/// What a static case or an implicit step solves for each column of a block, over the free nodes:
+///
+///     w M (y - target) - f_elastic(y) + d D(old) (y - old) = external ,
+///
+/// w = d = 0 in statics; in a step of length s, w = 1 / s^2 and d = 1 / s. D has the springs' directions at `old`.
+/// `factor` is of the same matrix at the rest shape, and preconditions.
+template <int Dim>
+struct ImplicitSystem {
+    const SpringNetwork<Dim, double>& network;
+    const std::vector<int>& clamped;
+    const BlockCholesky& factor;
+    double inertia = 0; ///< w
+    double damping = 0; ///< d
+
+    /// Sets the rows of clamped nodes to 0.
+    void hold(Block& block) const {
+        for (int node : clamped) {
+            block.middleRows<Dim>(Dim * node).setZero();
+        }
+    }
+
+    [[nodiscard]] bool is_damped() const { return damping > 0 && (network.damping.array() > 0).any(); }
+
+    void add_inertia(const Block& direction, double sign, Block& product) const {
+        for (Index i = 0; inertia > 0 && i < network.n_nodes(); ++i) {
+            product.middleRows<Dim>(Dim * i) += sign * inertia * network.mass(i) * direction.middleRows<Dim>(Dim * i);
+        }
+    }
+
+    /// product = (w M + K(y) + d D(old)) direction, for a direction that leaves clamped nodes where they are.
+    void multiply(const Block& y, const Block& old, const Block& direction, Block& product) const {
+        product.setZero(y.rows(), y.cols());
+        add_stiffness_product<Dim>(network, y, direction, product);
+        add_inertia(direction, 1, product);
+        if (is_damped()) {
+            add_damping_product<Dim>(network, old, damping, direction, product);
+        }
+        hold(product);
+    }
+
+    /// What is out of balance: external + f_elastic(y) - w M (y - target) - d D(old) (y - old).
+    void unbalanced(const Block& y, const Block& target, const Block& old, const Block& external,
+                    Block& force) const {
+        force = external;
+        add_elastic_forces<Dim>(network, y, force);
+        if (inertia > 0) {
+            add_inertia(y - target, -1, force);
+        }
+        if (is_damped()) {
+            add_damping_product<Dim>(network, old, -damping, y - old, force);
+        }
+        hold(force);
+    }
+
+    /// The function whose gradient is minus that, per column, J.
+    [[nodiscard]] Eigen::ArrayXd energy(const Block& y, const Block& target, const Block& old,
+                                        const Block& external) const {
+        Eigen::ArrayXd energy = elastic_energy<Dim>(network, y);
+        const Block away = y - target;
+        energy -= external.cwiseProduct(away).colwise().sum().transpose().array();
+        if (inertia > 0) {
+            Block force = Block::Zero(y.rows(), y.cols());
+            add_inertia(away, 0.5, force);
+            energy += force.cwiseProduct(away).colwise().sum().transpose().array();
+        }
+        if (is_damped()) {
+            const Block moved = y - old;
+            Block force = Block::Zero(y.rows(), y.cols());
+            add_damping_product<Dim>(network, old, damping / 2, moved, force);
+            energy += force.cwiseProduct(moved).colwise().sum().transpose().array();
+        }
+        return energy;
+    }
+};
+
+inline Eigen::ArrayXd column_dots(const Block& a, const Block& b) {
+    return a.cwiseProduct(b).colwise().sum().transpose().array();
+}
+
+inline Eigen::ArrayXd column_maxima(const Block& a) { return a.cwiseAbs().colwise().maxCoeff().transpose().array(); }
+
+/// Conjugate gradients on every column at once, until |residual| <= tolerance |right| in each. False where some column
+/// met negative curvature or did not converge; its solution is then the iterate before, a direction of descent.
+template <class Multiply>
+bool conjugate_gradients(const BlockCholesky& factor, const Multiply& multiply, const Block& right, double tolerance,
+                         int max_iterations, Block& solution) {
+    const Eigen::ArrayXd goal = tolerance * column_dots(right, right).sqrt();
+    solution.setZero(right.rows(), right.cols());
+    Block residual = right;
+    Block z;
+    factor.solve(residual, z);
+    Block direction = z;
+    Block product;
+    Eigen::ArrayXd rz = column_dots(residual, z);
+    Eigen::ArrayXd active = (rz > 0).cast<double>();
+    bool definite = true;
+    for (int iteration = 0; (active > 0).any(); ++iteration) {
+        if (iteration == max_iterations) {
+            return false;
+        }
+        multiply(direction, product);
+        const Eigen::ArrayXd curvature = column_dots(direction, product);
+        for (Index c = 0; c < active.size(); ++c) {
+            if (active(c) > 0 && !(curvature(c) > 0)) {
+                definite = false;
+                active(c) = 0;
+                if (iteration == 0) {
+                    solution.col(c) = direction.col(c);
+                }
+            }
+        }
+        const Eigen::ArrayXd alpha = (active > 0).select(rz / curvature, 0.);
+        solution += direction * alpha.matrix().asDiagonal();
+        residual -= product * alpha.matrix().asDiagonal();
+        active *= (column_dots(residual, residual).sqrt() > goal).cast<double>();
+        if (!(active > 0).any()) {
+            break;
+        }
+        factor.solve(residual, z);
+        const Eigen::ArrayXd next = column_dots(residual, z);
+        const Eigen::ArrayXd beta = (active > 0).select(next / rz, 0.);
+        direction = z + direction * beta.matrix().asDiagonal();
+        rz = (active > 0).select(next, rz);
+    }
+    return definite;
+}
+
+/// Solves an implicit system for all columns by Newton's method with a line search, from `y` as it stands (clamped
+/// nodes where they shall be). False where some column did not come to balance.
+template <int Dim>
+bool solve_implicit(const ImplicitSystem<Dim>& system, const Block& target, const Block& old, const Block& external,
+                    Block& y) {
+    constexpr int max_iterations = 80;
+    constexpr double tolerance = 1e-10; // of the largest force that moves a node
+    constexpr double epsilon = std::numeric_limits<double>::epsilon();
+    Block force;
+    system.unbalanced(y, target, old, external, force);
+    Eigen::ArrayXd unbalanced = column_maxima(force);
+    double stiffest = system.inertia > 0 ? system.inertia * system.network.mass.maxCoeff() : 0.;
+    stiffest += system.network.stiffness.maxCoeff() + system.damping * system.network.damping.maxCoeff();
+    const double rounding = 64 * epsilon * stiffest * y.cwiseAbs().maxCoeff(); // some 16 springs at a node
+    const Eigen::ArrayXd goal = (tolerance * column_maxima(external).max(unbalanced)).max(rounding);
+    Eigen::ArrayXd energy = system.energy(y, target, old, external);
+    Block direction;
+    for (int iteration = 0; iteration < max_iterations; ++iteration) {
+        if (!unbalanced.allFinite()) {
+            return false;
+        }
+        if ((unbalanced <= goal).all()) {
+            return true;
+        }
+        const bool definite = conjugate_gradients(
+            system.factor, [&](const Block& p, Block& q) { system.multiply(y, old, p, q); }, force, 1e-2, 100,
+            direction);
+        const Eigen::ArrayXd slope = column_dots(force, direction);
+        const Eigen::ArrayXd norm = column_dots(force, force);
+        Eigen::ArrayXd length = (unbalanced > goal).cast<double>();
+        Block trial;
+        Block trial_force;
+        Eigen::ArrayXd trial_energy;
+        bool accepted = false;
+        for (int halving = 0; halving < 30 && !accepted; ++halving) {
+            trial = y + direction * length.matrix().asDiagonal();
+            trial_energy = system.energy(trial, target, old, external);
+            system.unbalanced(trial, target, old, external, trial_force);
+            const Eigen::ArrayXd trial_norm = column_dots(trial_force, trial_force);
+            accepted = true;
+            for (Index c = 0; c < length.size(); ++c) {
+                const bool falls = trial_energy(c) <= energy(c) - 1e-4 * length(c) * slope(c);
+                const bool nearer = definite && trial_norm(c) < norm(c) * (1 - 1e-4 * length(c));
+                if (length(c) > 0 && !(falls || nearer)) {
+                    length(c) /= 2;
+                    accepted = false;
+                }
+            }
+        }
+        if (!accepted) { // rounding, or no descent
+            return (unbalanced <= 1e4 * goal).all();
+        }
+        y.swap(trial);
+        force.swap(trial_force);
+        energy = trial_energy;
+        unbalanced = column_maxima(force);
+    }
+    return false;
+}
+
+} // namespace springfit::detail

@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+
+#include <springfit/fit/trajectory_parameters.hpp>
+#include <springfit/solve/block_cholesky.hpp>
+
+/// The forces of a network and their derivatives for several motions of it at once: all blocks are over all nodes
+/// `[Dim * n_nodes x n_columns]`, one column per motion.
+namespace springfit::detail {
+
+template <int Dim>
+using LaneVector = std::array<Lanes, Dim>;
+
+template <int Dim>
+Lanes dot(const LaneVector<Dim>& a, const LaneVector<Dim>& b) {
+    Lanes sum = a[0] * b[0];
+    for (int d = 1; d < Dim; ++d) {
+        sum += a[d] * b[d];
+    }
+    return sum;
+}
+
+inline LaneVector<3> cross(const LaneVector<3>& a, const LaneVector<3>& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+inline Eigen::Map<const Lanes> lanes(const Block& block, Index row, Index column) {
+    return Eigen::Map<const Lanes>(block.data() + row * block.cols() + column);
+}
+
+inline Eigen::Map<Lanes> lanes(Block& block, Index row, Index column) {
+    return Eigen::Map<Lanes>(block.data() + row * block.cols() + column);
+}
+
+template <int Dim>
+LaneVector<Dim> difference(const Block& block, int j, int i, Index column) {
+    LaneVector<Dim> result;
+    for (int d = 0; d < Dim; ++d) {
+        result[d] = lanes(block, Dim * j + d, column) - lanes(block, Dim * i + d, column);
+    }
+    return result;
+}
+
+/// Adds `force` to node i and takes it from node j.
+template <int Dim>
+void add_pair(Block& forces, int i, int j, Index column, const LaneVector<Dim>& force) {
+    for (int d = 0; d < Dim; ++d) {
+        lanes(forces, Dim * i + d, column) += force[d];
+        lanes(forces, Dim * j + d, column) -= force[d];
+    }
+}
+
+template <int Dim>
+LaneVector<Dim> scaled(const Lanes& factor, const LaneVector<Dim>& v) {
+    LaneVector<Dim> result;
+    for (int d = 0; d < Dim; ++d) {
+        result[d] = factor * v[d];
+    }
+    return result;
+}
+
+/// Length and direction of a spring in each lane.
+template <int Dim>
+struct SpringLanes {
+    LaneVector<Dim> n;
+    Lanes length;
+    Lanes inverse_length;
+
+    SpringLanes(const Block& positions, int i, int j, Index column) : n(difference<Dim>(positions, j, i, column)) {
+        length = dot<Dim>(n, n).sqrt();
+        inverse_length = (length > 0).select(1 / length, Lanes::Zero());
+        n = scaled<Dim>(inverse_length, n);
+    }
+};
+
+/// Signed volume of a cell and its gradient at the corners 1 to Dim (that at corner 0 is minus their sum), or both
+/// along a displacement of the corners.
+template <int Dim>
+struct CellLanes {
+    std::array<LaneVector<Dim>, Dim> sides;
+    std::array<LaneVector<Dim>, Dim> gradient;
+    Lanes volume;
+
+    template <class Corners>
+    CellLanes(const Block& positions, const Corners& corners, Index column) {
+        for (int a = 0; a < Dim; ++a) {
+            sides[a] = difference<Dim>(positions, corners(a + 1), corners(0), column);
+        }
+        if constexpr (Dim == 2) {
+            gradient[0] = {sides[1][1] / 2, -sides[1][0] / 2};
+            gradient[1] = {-sides[0][1] / 2, sides[0][0] / 2};
+        } else {
+            for (int a = 0; a < 3; ++a) {
+                gradient[a] = scaled<3>(Lanes::Constant(1. / 6), cross(sides[(a + 1) % 3], sides[(a + 2) % 3]));
+            }
+        }
+        volume = dot<Dim>(sides[0], gradient[0]);
+    }
+
+    /// How the gradient changes when the sides change by `moved`.
+    [[nodiscard]] std::array<LaneVector<Dim>, Dim>
+    gradient_along(const std::array<LaneVector<Dim>, Dim>& moved) const {
+        std::array<LaneVector<Dim>, Dim> result;
+        if constexpr (Dim == 2) {
+            result[0] = {moved[1][1] / 2, -moved[1][0] / 2};
+            result[1] = {-moved[0][1] / 2, moved[0][0] / 2};
+        } else {
+            for (int a = 0; a < 3; ++a) {
+                const auto first = cross(moved[(a + 1) % 3], sides[(a + 2) % 3]);
+                const auto second = cross(sides[(a + 1) % 3], moved[(a + 2) % 3]);
+                for (int d = 0; d < 3; ++d) {
+                    result[a][d] = (first[d] + second[d]) / 6;
+                }
+            }
+        }
+        return result;
+    }
+
+    /// The change of the volume when the sides change by `moved`.
+    [[nodiscard]] Lanes volume_along(const std::array<LaneVector<Dim>, Dim>& moved) const {
+        Lanes sum = dot<Dim>(gradient[0], moved[0]);
+        for (int a = 1; a < Dim; ++a) {
+            sum += dot<Dim>(gradient[a], moved[a]);
+        }
+        return sum;
+    }
+};
+
+/// The sides of a cell in a block of displacements.
+template <int Dim, class Corners>
+std::array<LaneVector<Dim>, Dim> sides_of(const Block& block, const Corners& corners, Index column) {
+    std::array<LaneVector<Dim>, Dim> sides;
+    for (int a = 0; a < Dim; ++a) {
+        sides[a] = difference<Dim>(block, corners(a + 1), corners(0), column);
+    }
+    return sides;
+}
+
+/// Adds `factor * v_a` at corner a of a cell, and minus the sum of them at corner 0.
+template <int Dim, class Corners>
+void add_cell(Block& forces, const Corners& corners, Index column, const Lanes& factor,
+              const std::array<LaneVector<Dim>, Dim>& v) {
+    for (int a = 0; a < Dim; ++a) {
+        add_pair<Dim>(forces, corners(a + 1), corners(0), column, scaled<Dim>(factor, v[a]));
+    }
+}
+
+/// Elastic energy of each column [n_columns], J.
+template <int Dim>
+Eigen::ArrayXd elastic_energy(const SpringNetwork<Dim, double>& network, const Block& positions) {
+    Eigen::ArrayXd energy = Eigen::ArrayXd::Zero(positions.cols());
+    for (Index column = 0; column < positions.cols(); column += block_lanes) {
+        Lanes twice = Lanes::Zero();
+        for (Index e = 0; e < network.n_springs(); ++e) {
+            const auto r = difference<Dim>(positions, network.springs(1, e), network.springs(0, e), column);
+            twice += network.stiffness(e) * (dot<Dim>(r, r).sqrt() - network.rest_length(e)).square();
+        }
+        for (Index c = 0; c < network.n_cells(); ++c) {
+            const CellLanes<Dim> cell(positions, network.cells.col(c), column);
+            twice += network.volume_stiffness(c) / network.rest_volume(c) *
+                     (cell.volume - network.rest_volume(c)).square();
+        }
+        energy.segment<block_lanes>(column) = twice / 2;
+    }
+    return energy;
+}
+
+/// forces += minus the gradient of the elastic energy, N.
+template <int Dim>
+void add_elastic_forces(const SpringNetwork<Dim, double>& network, const Block& positions, Block& forces) {
+    for (Index column = 0; column < positions.cols(); column += block_lanes) {
+        for (Index e = 0; e < network.n_springs(); ++e) {
+            const int i = network.springs(0, e);
+            const int j = network.springs(1, e);
+            const SpringLanes<Dim> spring(positions, i, j, column);
+            const Lanes tension = network.stiffness(e) * (spring.length - network.rest_length(e));
+            add_pair<Dim>(forces, i, j, column, scaled<Dim>(tension, spring.n));
+        }
+        for (Index c = 0; c < network.n_cells(); ++c) {
+            const CellLanes<Dim> cell(positions, network.cells.col(c), column);
+            const Lanes pressure = network.volume_stiffness(c) * (1 - cell.volume / network.rest_volume(c));
+            add_cell<Dim>(forces, network.cells.col(c), column, pressure, cell.gradient);
+        }
+    }
+}
+
+/// product += K(positions) direction, K the exact Hessian of the elastic energy.
+template <int Dim>
+void add_stiffness_product(const SpringNetwork<Dim, double>& network, const Block& positions, const Block& direction,
+                           Block& product) {
+    for (Index column = 0; column < positions.cols(); column += block_lanes) {
+        for (Index e = 0; e < network.n_springs(); ++e) {
+            const int i = network.springs(0, e);
+            const int j = network.springs(1, e);
+            const SpringLanes<Dim> spring(positions, i, j, column);
+            const auto moved = difference<Dim>(direction, j, i, column);
+            const Lanes across = network.stiffness(e) * (1 - network.rest_length(e) * spring.inverse_length);
+            const Lanes along = (network.stiffness(e) - across) * dot<Dim>(spring.n, moved);
+            LaneVector<Dim> force;
+            for (int d = 0; d < Dim; ++d) {
+                force[d] = along * spring.n[d] + across * moved[d];
+            }
+            add_pair<Dim>(product, j, i, column, force);
+        }
+        for (Index c = 0; c < network.n_cells(); ++c) {
+            const auto corners = network.cells.col(c);
+            const CellLanes<Dim> cell(positions, corners, column);
+            const auto moved = sides_of<Dim>(direction, corners, column);
+            const double modulus = network.volume_stiffness(c) / network.rest_volume(c);
+            add_cell<Dim>(product, corners, column, modulus * cell.volume_along(moved), cell.gradient);
+            add_cell<Dim>(product, corners, column, modulus * (cell.volume - network.rest_volume(c)),
+                          cell.gradient_along(moved));
+        }
+    }
+}
+
+/// product += factor * D direction, D = sum c_e n_e n_e' with n_e at `positions`.
+template <int Dim>
+void add_damping_product(const SpringNetwork<Dim, double>& network, const Block& positions, double factor,
+                         const Block& direction, Block& product) {
+    for (Index column = 0; column < positions.cols(); column += block_lanes) {
+        for (Index e = 0; e < network.n_springs(); ++e) {
+            const int i = network.springs(0, e);
+            const int j = network.springs(1, e);
+            const SpringLanes<Dim> spring(positions, i, j, column);
+            const Lanes rate = dot<Dim>(spring.n, difference<Dim>(direction, j, i, column));
+            add_pair<Dim>(product, j, i, column, scaled<Dim>(factor * network.damping(e) * rate, spring.n));
+        }
+    }
+}
+
+/// derivative += d(test . D(positions) rates) / d(positions), by the directions of the springs.
+template <int Dim>
+void add_damping_derivative(const SpringNetwork<Dim, double>& network, const Block& positions, const Block& rates,
+                            const Block& test, double factor, Block& derivative) {
+    for (Index column = 0; column < positions.cols(); column += block_lanes) {
+        for (Index e = 0; e < network.n_springs(); ++e) {
+            const int i = network.springs(0, e);
+            const int j = network.springs(1, e);
+            const SpringLanes<Dim> spring(positions, i, j, column);
+            const auto rate = difference<Dim>(rates, j, i, column);
+            const auto tested = difference<Dim>(test, j, i, column);
+            const Lanes rate_along = dot<Dim>(spring.n, rate);
+            const Lanes test_along = dot<Dim>(spring.n, tested);
+            const Lanes scale = factor * network.damping(e) * spring.inverse_length;
+            LaneVector<Dim> change; // of the spring's vector r
+            for (int d = 0; d < Dim; ++d) {
+                change[d] = scale * (tested[d] * rate_along + rate[d] * test_along -
+                                     2 * rate_along * test_along * spring.n[d]);
+            }
+            add_pair<Dim>(derivative, j, i, column, change);
+        }
+    }
+}
+
+/// forces += the change of the elastic forces with the network's stiffness, rest length and volume stiffness.
+template <int Dim>
+void add_parameter_forces(const SpringNetwork<Dim, double>& network, const NetworkValues& change,
+                          const Block& positions, Block& forces) {
+    for (Index column = 0; column < positions.cols(); column += block_lanes) {
+        for (Index e = 0; e < network.n_springs(); ++e) {
+            const int i = network.springs(0, e);
+            const int j = network.springs(1, e);
+            const SpringLanes<Dim> spring(positions, i, j, column);
+            const Lanes tension = change.stiffness(e) * (spring.length - network.rest_length(e)) -
+                                  network.stiffness(e) * change.rest_length(e);
+            add_pair<Dim>(forces, i, j, column, scaled<Dim>(tension, spring.n));
+        }
+        for (Index c = 0; c < network.n_cells(); ++c) {
+            const CellLanes<Dim> cell(positions, network.cells.col(c), column);
+            const Lanes pressure = change.volume_stiffness(c) * (1 - cell.volume / network.rest_volume(c));
+            add_cell<Dim>(forces, network.cells.col(c), column, pressure, cell.gradient);
+        }
+    }
+}
+
+/// derivative += d(test . elastic forces) / d(stiffness, rest length, volume stiffness), summed over the columns: the
+/// transpose of `add_parameter_forces`.
+template <int Dim>
+void add_parameter_derivative(const SpringNetwork<Dim, double>& network, const Block& positions, const Block& test,
+                              NetworkValues& derivative) {
+    for (Index column = 0; column < positions.cols(); column += block_lanes) {
+        for (Index e = 0; e < network.n_springs(); ++e) {
+            const int i = network.springs(0, e);
+            const int j = network.springs(1, e);
+            const SpringLanes<Dim> spring(positions, i, j, column);
+            const Lanes along = dot<Dim>(spring.n, difference<Dim>(test, i, j, column));
+            derivative.stiffness(e) += (along * (spring.length - network.rest_length(e))).sum();
+            derivative.rest_length(e) -= network.stiffness(e) * along.sum();
+        }
+        for (Index c = 0; c < network.n_cells(); ++c) {
+            const auto corners = network.cells.col(c);
+            const CellLanes<Dim> cell(positions, corners, column);
+            const Lanes along = cell.volume_along(sides_of<Dim>(test, corners, column));
+            derivative.volume_stiffness(c) += (along * (1 - cell.volume / network.rest_volume(c))).sum();
+        }
+    }
+}
+
+/// forces += the change of the damping forces -D rates with c; n_e at `positions`.
+template <int Dim>
+void add_damping_parameter_forces(const SpringNetwork<Dim, double>& network, const NetworkValues& change,
+                                  const Block& positions, const Block& rates, Block& forces) {
+    for (Index column = 0; column < positions.cols(); column += block_lanes) {
+        for (Index e = 0; e < network.n_springs(); ++e) {
+            const int i = network.springs(0, e);
+            const int j = network.springs(1, e);
+            const SpringLanes<Dim> spring(positions, i, j, column);
+            const Lanes rate = dot<Dim>(spring.n, difference<Dim>(rates, j, i, column));
+            add_pair<Dim>(forces, i, j, column, scaled<Dim>(change.damping(e) * rate, spring.n));
+        }
+    }
+}
+
+/// derivative += d(test . -D rates) / dc, summed over the columns.
+template <int Dim>
+void add_damping_parameter_derivative(const SpringNetwork<Dim, double>& network, const Block& positions,
+                                      const Block& rates, const Block& test, NetworkValues& derivative) {
+    for (Index column = 0; column < positions.cols(); column += block_lanes) {
+        for (Index e = 0; e < network.n_springs(); ++e) {
+            const int i = network.springs(0, e);
+            const int j = network.springs(1, e);
+            const SpringLanes<Dim> spring(positions, i, j, column);
+            const Lanes rate = dot<Dim>(spring.n, difference<Dim>(rates, j, i, column));
+            const Lanes along = dot<Dim>(spring.n, difference<Dim>(test, i, j, column));
+            derivative.damping(e) += (rate * along).sum();
+        }
+    }
+}
+
+} // namespace springfit::detail

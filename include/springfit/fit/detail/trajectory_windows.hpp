@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+
+#include <springfit/fit/detail/implicit_block.hpp>
+#include <springfit/motion/motion.hpp>
+#include <springfit/network/forces.hpp>
+
+namespace springfit::detail {
+
+/// Windows of motions that are simulated side by side: all static, or all dynamic of one length and one step, under the
+/// same clamps.
+struct WindowBlock {
+    std::size_t group = 0;            ///< which system matrix
+    std::vector<std::size_t> motions; ///< of each column; the last is repeated to a whole number of lanes
+    std::vector<Index> first;         ///< frame that a window starts from
+    Values<double> weight;            ///< of |x - x_ref|^2 in the objective, 1/m^2; 0 for repeated columns
+    Index frames = 0;                 ///< that a window predicts; 0: a static case
+};
+
+/// The matrix that the windows of some blocks share.
+template <int Dim>
+struct WindowGroup {
+    std::vector<int> clamped;
+    FreeNodes free;
+    double step = 0; ///< h, s; 0: statics
+    CliqueMatrix<Dim, double> pattern;
+};
+
+/// How a step of h goes from (x, v): y is where an implicit Euler step of alpha h leads, and the step is carried on from
+/// there in a straight line, x+ = x + (y - x) / alpha, v+ = v + ((y - x) / (alpha h) - v) / alpha: implicit Euler at
+/// alpha = 1, the implicit midpoint rule at 1/2.
+struct StepRule {
+    double alpha = 0.5;
+    int steps_per_frame = 1;
+};
+
+/// What a simulated block keeps: its states at checkpoints, and all steps of one segment between them.
+struct WindowTape {
+    std::vector<Block> positions, velocities; ///< at the start of each segment; of a static case, the equilibrium
+    Index segment = -1;                       ///< whose steps are kept
+    std::vector<Block> x, v, y;               ///< of each step of that segment
+};
+
+/// The motions of a network in one block of windows, and their derivatives.
+template <int Dim>
+class WindowSimulation {
+public:
+    using Motions = std::vector<Motion<Dim, double>>;
+
+    WindowSimulation(const WindowBlock& windows, const WindowGroup<Dim>& group, const Motions& motions,
+                     const StepRule& rule, Index checkpoint_interval, const SpringNetwork<Dim, double>& network,
+                     const BlockCholesky& factor)
+        : m_windows(windows), m_motions(motions), m_rule(rule), m_part(rule.alpha * group.step),
+          m_system{network, group.clamped, factor, group.step > 0 ? 1 / (m_part * m_part) : 0.,
+                   group.step > 0 ? 1 / m_part : 0.},
+          m_n_steps(windows.frames * rule.steps_per_frame), m_interval(checkpoint_interval) {}
+
+    /// Simulates; `misfit` is sum weight |x - x_ref|^2. `near` is where static equilibria are looked for, null: at the
+    /// reference. False where the network does not come to balance.
+    [[nodiscard]] bool simulate(WindowTape& tape, const WindowTape* near, double& misfit) const {
+        tape = {};
+        misfit = 0;
+        if (m_windows.frames == 0) {
+            const Block reference = gather(&Motion<Dim, double>::positions, 0, 0);
+            Block y = near != nullptr && !near->positions.empty() ? near->positions.front() : reference;
+            set_clamped(reference, y);
+            if (!solve_implicit<Dim>(m_system, reference, y, gather(&Motion<Dim, double>::external_forces, 0, 0), y)) {
+                return false;
+            }
+            misfit = weighted_square(residual(y, 0));
+            tape.positions.push_back(std::move(y));
+            return true;
+        }
+        Block x = gather(&Motion<Dim, double>::positions, 0, 0);
+        Block v = gather(&Motion<Dim, double>::velocities, 0, 0);
+        for (Index segment = 0; segment < n_segments(); ++segment) {
+            tape.positions.push_back(x);
+            tape.velocities.push_back(v);
+            if (!run_segment(tape, segment)) {
+                return false;
+            }
+            for (Index s = 0; s < segment_length(segment); ++s) {
+                x = tape.x[static_cast<std::size_t>(s)];
+                v = tape.v[static_cast<std::size_t>(s)];
+                finish_step(tape.y[static_cast<std::size_t>(s)], x, v);
+                if (const Index step = segment * m_interval + s + 1; step % m_rule.steps_per_frame == 0) {
+                    misfit += weighted_square(residual(x, step / m_rule.steps_per_frame));
+                }
+            }
+        }
+        return std::isfinite(misfit);
+    }
+
+    /// derivative += 1/2 d misfit / d network's values, by the adjoint. False where a state is not stable.
+    [[nodiscard]] bool add_gradient(WindowTape& tape, NetworkValues& derivative) const {
+        if (m_windows.frames == 0) {
+            const Block& y = tape.positions.front();
+            Block z;
+            if (!solve_adjoint(y, y, weighted(residual(y, 0)), z)) {
+                return false;
+            }
+            add_parameter_derivative<Dim>(m_system.network, y, z, derivative);
+            return true;
+        }
+        return backwards(
+            tape, [&](const Block& state, Index frame) { return weighted(residual(state, frame)); },
+            [&](const Block& y, const Block& x, const Block& right, Block& z) { return solve_adjoint(y, x, right, z); },
+            true, derivative);
+    }
+
+    /// derivative += J' W J change, J the derivative of the positions but for that of the springs' directions in damping.
+    void add_product(WindowTape& tape, const NetworkValues& change, NetworkValues& derivative) const {
+        const auto solve = [&](const Block& y, const Block& x, const Block& right, Block& z) {
+            solve_loosely(y, x, right, z);
+            return true;
+        };
+        if (m_windows.frames == 0) {
+            const Block& y = tape.positions.front();
+            Block force = Block::Zero(y.rows(), y.cols());
+            add_parameter_forces<Dim>(m_system.network, change, y, force);
+            m_system.hold(force);
+            Block u;
+            solve_loosely(y, y, force, u);
+            solve_loosely(y, y, weighted(u), force);
+            add_parameter_derivative<Dim>(m_system.network, y, force, derivative);
+            return;
+        }
+        const std::vector<Block> moved = forwards(tape, change);
+        (void)backwards(
+            tape,
+            [&](const Block&, Index frame) { return weighted(moved[static_cast<std::size_t>(frame - 1)]); }, solve,
+            false, derivative);
+    }
+
+    /// derivative += J' W^(1/2) z for numbers z, one for each coordinate of each frame, from `draw()`.
+    template <class Draw>
+    void add_probe(WindowTape& tape, Draw&& draw, NetworkValues& derivative) const {
+        const auto random = [&](const Block& state) {
+            Block z(state.rows(), state.cols());
+            for (Index column = 0; column < z.cols(); ++column) {
+                for (Index row = 0; row < z.rows(); ++row) {
+                    z(row, column) = draw() * std::sqrt(m_windows.weight(column));
+                }
+            }
+            m_system.hold(z);
+            return z;
+        };
+        const auto solve = [&](const Block&, const Block&, const Block& right, Block& z) {
+            m_system.factor.solve(right, z);
+            return true;
+        };
+        if (m_windows.frames == 0) {
+            const Block& y = tape.positions.front();
+            Block z;
+            m_system.factor.solve(random(y), z);
+            add_parameter_derivative<Dim>(m_system.network, y, z, derivative);
+            return;
+        }
+        (void)backwards(tape, [&](const Block& state, Index) { return random(state); }, solve, false, derivative);
+    }
+
+private:
+    using Frames = std::vector<Points<Dim, double>>;
+
+    [[nodiscard]] Index n_segments() const { return (m_n_steps + m_interval - 1) / m_interval; }
+    [[nodiscard]] Index segment_length(Index segment) const {
+        return std::min(m_interval, m_n_steps - segment * m_interval);
+    }
+
+    /// A recorded quantity of each window, `fraction` of the way from one of its frames to the next.
+    [[nodiscard]] Block gather(Frames Motion<Dim, double>::* quantity, Index frame, double fraction) const {
+        const auto columns = static_cast<Index>(m_windows.motions.size());
+        Block result(Dim * m_system.network.n_nodes(), columns);
+        for (Index c = 0; c < columns; ++c) {
+            const auto& motion = m_motions[m_windows.motions[static_cast<std::size_t>(c)]];
+            const auto at = static_cast<std::size_t>(m_windows.first[static_cast<std::size_t>(c)] + frame);
+            const auto& here = (motion.*quantity)[at];
+            result.col(c) = here.reshaped();
+            if (fraction > 0) {
+                result.col(c) += fraction * ((motion.*quantity)[at + 1] - here).reshaped();
+            }
+        }
+        return result;
+    }
+
+    void set_clamped(const Block& from, Block& to) const {
+        for (int node : m_system.clamped) {
+            to.middleRows<Dim>(Dim * node) = from.middleRows<Dim>(Dim * node);
+        }
+    }
+
+    /// x - x_ref at a frame of the windows; 0 at clamped nodes.
+    [[nodiscard]] Block residual(const Block& x, Index frame) const {
+        Block result = x - gather(&Motion<Dim, double>::positions, frame, 0);
+        m_system.hold(result);
+        return result;
+    }
+
+    [[nodiscard]] double weighted_square(const Block& residual) const {
+        return (column_dots(residual, residual) * m_windows.weight.array()).sum();
+    }
+
+    [[nodiscard]] Block weighted(const Block& block) const { return block * m_windows.weight.asDiagonal(); }
+
+    void finish_step(const Block& y, Block& x, Block& v) const {
+        const Block moved = y - x;
+        x += moved / m_rule.alpha;
+        v += (moved / m_part - v) / m_rule.alpha;
+    }
+
+    /// Makes the tape hold the steps of a segment, from its checkpoint.
+    [[nodiscard]] bool run_segment(WindowTape& tape, Index segment) const {
+        if (tape.segment == segment) {
+            return true;
+        }
+        tape.segment = -1;
+        tape.x.clear();
+        tape.v.clear();
+        tape.y.clear();
+        Block x = tape.positions[static_cast<std::size_t>(segment)];
+        Block v = tape.velocities[static_cast<std::size_t>(segment)];
+        for (Index s = 0; s < segment_length(segment); ++s) {
+            const Index step = segment * m_interval + s;
+            const Index frame = step / m_rule.steps_per_frame;
+            const double fraction = (static_cast<double>(step % m_rule.steps_per_frame) + m_rule.alpha) /
+                                    static_cast<double>(m_rule.steps_per_frame);
+            const Block target = x + m_part * v;
+            Block y = target;
+            set_clamped(gather(&Motion<Dim, double>::positions, frame, fraction), y);
+            if (!solve_implicit<Dim>(m_system, target, x,
+                                     gather(&Motion<Dim, double>::external_forces, frame, fraction), y)) {
+                return false;
+            }
+            tape.x.push_back(x);
+            tape.v.push_back(v);
+            finish_step(y, x, v);
+            tape.y.push_back(std::move(y));
+        }
+        tape.segment = segment;
+        return true;
+    }
+
+    [[nodiscard]] bool solve_adjoint(const Block& y, const Block& old, const Block& right, Block& z) const {
+        return conjugate_gradients(
+            m_system.factor, [&](const Block& p, Block& q) { m_system.multiply(y, old, p, q); }, right, 1e-10, 300, z);
+    }
+
+    /// To a tenth of a per cent, as products with a Gauss-Newton matrix need.
+    void solve_loosely(const Block& y, const Block& old, const Block& right, Block& z) const {
+        (void)conjugate_gradients(
+            m_system.factor, [&](const Block& p, Block& q) { m_system.multiply(y, old, p, q); }, right, 1e-3, 30, z);
+    }
+
+    /// The change of the positions at each frame along a change of the network's values.
+    [[nodiscard]] std::vector<Block> forwards(WindowTape& tape, const NetworkValues& change) const {
+        std::vector<Block> frames;
+        Block dx = Block::Zero(tape.positions.front().rows(), tape.positions.front().cols());
+        Block dv = dx;
+        Block dy;
+        for (Index segment = 0; segment < n_segments(); ++segment) {
+            (void)run_segment(tape, segment);
+            for (Index s = 0; s < segment_length(segment); ++s) {
+                const Block& x = tape.x[static_cast<std::size_t>(s)];
+                const Block& y = tape.y[static_cast<std::size_t>(s)];
+                Block force = Block::Zero(x.rows(), x.cols());
+                m_system.add_inertia(dx + m_part * dv, 1, force);
+                add_parameter_forces<Dim>(m_system.network, change, y, force);
+                if (m_system.is_damped()) {
+                    add_damping_product<Dim>(m_system.network, x, m_system.damping, dx, force);
+                    add_damping_parameter_forces<Dim>(m_system.network, change, x, m_system.damping * (y - x), force);
+                }
+                m_system.hold(force);
+                solve_loosely(y, x, force, dy);
+                finish_step(dy, dx, dv);
+                if (const Index step = segment * m_interval + s + 1; step % m_rule.steps_per_frame == 0) {
+                    frames.push_back(dx);
+                }
+            }
+        }
+        return frames;
+    }
+
+    /// The discrete adjoint: `source(x, frame)` is what pulls at the positions of a frame, `solve(y, x, right, z)`
+    /// solves with the matrix of a step.
+    template <class Source, class Solve>
+    [[nodiscard]] bool backwards(WindowTape& tape, const Source& source, const Solve& solve, bool with_directions,
+                                 NetworkValues& derivative) const {
+        const double alpha = m_rule.alpha;
+        const double step_length = m_part / alpha;
+        Block lx = Block::Zero(tape.positions.front().rows(), tape.positions.front().cols());
+        Block lv = lx;
+        Block z;
+        for (Index segment = n_segments() - 1; segment >= 0; --segment) {
+            if (!run_segment(tape, segment)) {
+                return false;
+            }
+            for (Index s = segment_length(segment) - 1; s >= 0; --s) {
+                const Block& x = tape.x[static_cast<std::size_t>(s)];
+                const Block& y = tape.y[static_cast<std::size_t>(s)];
+                if (const Index step = segment * m_interval + s + 1; step % m_rule.steps_per_frame == 0) {
+                    const Block end = x + (y - x) / alpha;
+                    lx += source(end, step / m_rule.steps_per_frame);
+                }
+                const Block ly = lx / alpha + lv / (alpha * alpha * step_length);
+                if (!solve(y, x, ly, z)) {
+                    return false;
+                }
+                add_parameter_derivative<Dim>(m_system.network, y, z, derivative);
+                lx = lx * (1 - 1 / alpha) - lv / (alpha * alpha * step_length);
+                lv *= 1 - 1 / alpha;
+                Block inertial = Block::Zero(x.rows(), x.cols());
+                m_system.add_inertia(z, 1, inertial);
+                lx += inertial;
+                lv += m_part * inertial;
+                if (m_system.is_damped()) {
+                    const Block rates = m_system.damping * (y - x);
+                    add_damping_parameter_derivative<Dim>(m_system.network, x, rates, z, derivative);
+                    add_damping_product<Dim>(m_system.network, x, m_system.damping, z, lx);
+                    if (with_directions) {
+                        add_damping_derivative<Dim>(m_system.network, x, rates, z, -1, lx);
+                    }
+                }
+                m_system.hold(lx);
+                m_system.hold(lv);
+            }
+        }
+        return true;
+    }
+
+    const WindowBlock& m_windows;
+    const Motions& m_motions;
+    StepRule m_rule;
+    double m_part; ///< alpha h
+    ImplicitSystem<Dim> m_system;
+    Index m_n_steps;
+    Index m_interval;
+};
+
+} // namespace springfit::detail

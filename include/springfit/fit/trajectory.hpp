@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+
+#include <Eigen/Cholesky>
+
+#include <springfit/core/progress.hpp>
+#include <springfit/fit/trajectory_problem.hpp>
+
+namespace springfit {
+
+/// What an engine of trajectory matching found.
+struct TrajectoryReport {
+    Status status = Status::failed; ///< `failed`: not even the prior could be simulated
+    Values<double> theta;           ///< [n_unknowns], within the bounds; the best point that was simulated and stable
+    double objective_start = 0;     ///< J at the prior
+    double objective = 0;           ///< J at theta
+    double misfit_start = 0;        ///< relative error of the training motions at the prior
+    double misfit = 0;              ///< at theta
+    std::vector<double> history;    ///< J after each iteration
+    int iterations = 0;
+    int evaluations = 0; ///< simulations of all cases
+    int rejected = 0;    ///< trial points that were stepped back from: worse, singular, unstable
+    double seconds = 0;
+    double gradient_max = 0; ///< largest entry of the projected gradient at theta
+    /// Gauss-Newton curvature of the data along each unknown, diag(J' W J) [n_unknowns].
+    Values<double> curvature;
+    /// curvature / (curvature + lambda), in [0, 1]: above 1/2 the data sets the value, below the prior.
+    Values<double> data_share;
+
+    /// Unknowns whose value the data sets.
+    [[nodiscard]] Index n_set_by_data() const { return (data_share.array() > 0.5).count(); }
+};
+
+/// Which form of the Gauss-Newton matrix to use.
+enum class GaussNewtonForm {
+    automatic,  ///< dense where `TrajectoryPoint::has_dense`, else matrix-free
+    dense,      ///< the Hadamard form and a Cholesky factor
+    matrix_free ///< conjugate gradients on products
+};
+
+struct GaussNewtonOptions {
+    int max_iterations = 40;
+    double tolerance = 1e-3;       ///< stop when an iteration lowers J by less than this part, twice running; > 0
+    GaussNewtonForm form = GaussNewtonForm::automatic;
+    int max_cg_iterations = 40;    ///< of each matrix-free step
+    double cg_tolerance = 0.05;    ///< relative residual of each matrix-free step, in (0, 1)
+    double max_step = 1.5;         ///< largest change of an entry of theta in one iteration, > 0
+    int probes = 16;               ///< random vectors for the diagonal in matrix-free form, >= 1
+    ProgressCallback progress{};   ///< may end the search with the best so far
+};
+
+namespace detail {
+
+/// Marks unknowns that sit at a bound and would leave it along minus the gradient.
+inline std::vector<bool> at_active_bound(const Values<double>& theta, const Values<double>& gradient,
+                                         const Values<double>& lower, const Values<double>& upper) {
+    std::vector<bool> active(static_cast<std::size_t>(theta.size()));
+    for (Index u = 0; u < theta.size(); ++u) {
+        active[static_cast<std::size_t>(u)] =
+            (theta(u) <= lower(u) && gradient(u) > 0) || (theta(u) >= upper(u) && gradient(u) < 0);
+    }
+    return active;
+}
+
+/// Minimises 1/2 s'(H + mu I)s + gradient's over the unknowns that are not active, by preconditioned conjugate gradients.
+template <class Product>
+Values<double> reduced_newton_step(const Product& product, const Values<double>& diagonal, double mu,
+                                   const Values<double>& gradient, const std::vector<bool>& active, double tolerance,
+                                   int max_iterations) {
+    const auto reduce = [&](Values<double>& v) {
+        for (Index u = 0; u < v.size(); ++u) {
+            if (active[static_cast<std::size_t>(u)]) {
+                v(u) = 0;
+            }
+        }
+    };
+    Values<double> step = Values<double>::Zero(gradient.size());
+    Values<double> residual = -gradient;
+    reduce(residual);
+    const double goal = tolerance * residual.norm();
+    const Values<double> inverse = (diagonal.array() + mu).inverse();
+    Values<double> z = inverse.cwiseProduct(residual);
+    Values<double> direction = z;
+    double rz = residual.dot(z);
+    for (int iteration = 0; iteration < max_iterations && residual.norm() > goal; ++iteration) {
+        Values<double> image = product(direction) + mu * direction;
+        reduce(image);
+        const double curvature = direction.dot(image);
+        if (!(curvature > 0)) {
+            break;
+        }
+        const double alpha = rz / curvature;
+        step += alpha * direction;
+        residual -= alpha * image;
+        z = inverse.cwiseProduct(residual);
+        const double next = residual.dot(z);
+        direction = z + (next / rz) * direction;
+        rz = next;
+    }
+    return step;
+}
+
+inline double largest_projected(const Values<double>& gradient, const std::vector<bool>& active) {
+    double largest = 0;
+    for (Index u = 0; u < gradient.size(); ++u) {
+        largest = std::max(largest, active[static_cast<std::size_t>(u)] ? 0. : std::abs(gradient(u)));
+    }
+    return largest;
+}
+
+} // namespace detail
+
+/// Trajectory matching by a damped Gauss-Newton method (Levenberg and Marquardt) with exact gradients, projected onto
+/// the bounds.
+///
+/// Each iteration: one simulation of all cases, one adjoint, one factorisation per set of clamps; a dense Hadamard matrix for small static problems
+/// (n_unknowns^2 memory), else at most `max_cg_iterations` products of two solves per case. A trial point that is worse,
+/// singular, unstable or diverging is stepped back from by raising the damping, and is never returned. Deterministic.
+template <int Dim>
+[[nodiscard]] TrajectoryReport gauss_newton(const TrajectoryProblem<Dim>& problem,
+                                            const GaussNewtonOptions& options = {}) {
+    require(options.max_iterations >= 0, "max_iterations", "a number not below 0", options.max_iterations);
+    require(options.tolerance > 0, "tolerance", "a positive value", options.tolerance);
+    require(options.max_cg_iterations >= 1, "max_cg_iterations", "at least one", options.max_cg_iterations);
+    require(options.cg_tolerance > 0 && options.cg_tolerance < 1, "cg_tolerance", "a value in (0, 1)",
+            options.cg_tolerance);
+    require(options.max_step > 0, "max_step", "a positive value", options.max_step);
+    require(options.probes >= 1, "probes", "at least one", options.probes);
+
+    const auto start = std::chrono::steady_clock::now();
+    const auto& lower = problem.parameters().lower();
+    const auto& upper = problem.parameters().upper();
+    const double lambda = problem.options().prior_weight;
+    const Index n = problem.n_unknowns();
+
+    TrajectoryReport report;
+    report.theta = Values<double>::Zero(n).cwiseMax(lower).cwiseMin(upper);
+    report.curvature = Values<double>::Zero(n);
+    report.data_share = Values<double>::Zero(n);
+    auto point = std::make_unique<TrajectoryPoint<Dim>>(problem);
+    auto trial = std::make_unique<TrajectoryPoint<Dim>>(problem);
+    Values<double> gradient;
+    ++report.evaluations;
+    if (!point->move_to(report.theta) || !point->gradient(gradient)) {
+        return report;
+    }
+    report.objective_start = report.objective = point->value();
+    report.misfit_start = report.misfit = point->misfit();
+    report.status = Status::iteration_limit;
+
+    double mu = 0;
+    int small_gains = 0;
+    bool fresh = true; // the matrix at `point` is still to be made
+    DenseMatrix<double> dense;
+    Values<double> diagonal;
+    std::vector<bool> active;
+    while (true) {
+        if (fresh) {
+            active = detail::at_active_bound(point->theta(), gradient, lower, upper);
+            report.gradient_max = detail::largest_projected(gradient, active);
+            const bool use_dense = options.form == GaussNewtonForm::dense ||
+                                   (options.form == GaussNewtonForm::automatic && point->has_dense());
+            if (use_dense) {
+                dense = point->dense();
+                diagonal = dense.diagonal();
+            } else {
+                dense.resize(0, 0);
+                diagonal = point->curvature(options.probes).array() + lambda;
+            }
+            fresh = false;
+        }
+        if (report.gradient_max <= 1e-14 || small_gains >= 2) {
+            report.status = Status::converged;
+            break;
+        }
+        if (report.iterations >= options.max_iterations) {
+            break;
+        }
+        if (!go_on(options.progress, "trajectory",
+                   static_cast<double>(report.iterations) / std::max(1, options.max_iterations))) {
+            report.status = Status::interrupted;
+            break;
+        }
+
+        Values<double> step;
+        if (dense.size() > 0) {
+            DenseMatrix<double> matrix = dense;
+            Values<double> right = -gradient;
+            matrix.diagonal().array() += mu;
+            for (Index u = 0; u < n; ++u) {
+                if (active[static_cast<std::size_t>(u)]) {
+                    matrix.row(u).setZero();
+                    matrix.col(u).setZero();
+                    matrix(u, u) = 1;
+                    right(u) = 0;
+                }
+            }
+            step = matrix.ldlt().solve(right);
+        } else {
+            step = detail::reduced_newton_step([&](const Values<double>& v) { return point->product(v); }, diagonal, mu,
+                                               gradient, active, options.cg_tolerance, options.max_cg_iterations);
+        }
+        if (const double largest = step.cwiseAbs().maxCoeff(); largest > options.max_step) {
+            step *= options.max_step / largest;
+        }
+        const Values<double> theta = (point->theta() + step).cwiseMax(lower).cwiseMin(upper);
+        Values<double> trial_gradient;
+        ++report.evaluations;
+        const bool accepted = step.allFinite() && trial->move_to(theta, point.get()) &&
+                              trial->value() < point->value() && trial->gradient(trial_gradient);
+        if (!accepted) {
+            ++report.rejected;
+            mu = std::max(8 * mu, 0.05 * diagonal.maxCoeff() / 8);
+            if (mu > 1e8 * diagonal.maxCoeff() || step.cwiseAbs().maxCoeff() < 1e-10) {
+                report.status = Status::stalled;
+                break;
+            }
+            continue;
+        }
+        ++report.iterations;
+        const double gain = point->value() - trial->value();
+        small_gains = gain < options.tolerance * point->value() ? small_gains + 1 : 0;
+        mu = mu < 1e-6 * diagonal.maxCoeff() ? 0. : mu / 5;
+        point.swap(trial);
+        gradient.swap(trial_gradient);
+        report.history.push_back(point->value());
+        fresh = true;
+    }
+    report.theta = point->theta();
+    report.objective = point->value();
+    report.misfit = point->misfit();
+    report.curvature = (diagonal.array() - lambda).cwiseMax(0.);
+    report.data_share = report.curvature.array() / (report.curvature.array() + std::max(lambda, 1e-300));
+    report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return report;
+}
+
+/// Gives a network the values that a trajectory fit found; in its own scalar.
+template <int Dim, std::floating_point Scalar>
+void apply(const TrajectoryProblem<Dim>& problem, const TrajectoryReport& report, SpringNetwork<Dim, Scalar>& network) {
+    const SpringNetwork<Dim, double> fitted = problem.parameters().network(report.theta);
+    network.stiffness = fitted.stiffness.template cast<Scalar>();
+    network.damping = fitted.damping.template cast<Scalar>();
+    network.rest_length = fitted.rest_length.template cast<Scalar>();
+    network.volume_stiffness = fitted.volume_stiffness.template cast<Scalar>();
+}
+
+} // namespace springfit

@@ -1,0 +1,354 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fit_data.hpp"
+
+#include <springfit/fit/dominant_term.hpp>
+#include <springfit/fit/trajectory.hpp>
+#include <springfit/motion/record.hpp>
+#include <springfit/motion/replay.hpp>
+#include <springfit/network/volume.hpp>
+#include <springfit/step/equilibrium.hpp>
+#include <springfit/step/symplectic_euler.hpp>
+
+using namespace springfit;
+using test::Random;
+
+namespace {
+
+template <int D>
+using Dimension = std::integral_constant<int, D>;
+
+/// A small body of springs and cells whose stiffness varies, its first nodes clamped.
+template <int Dim>
+struct Fixture {
+    SpringNetwork<Dim, double> network;
+    std::vector<int> clamped;
+
+    explicit Fixture(bool cells) {
+        Random random(5);
+        if constexpr (Dim == 2) {
+            auto mesh = triangle_grid<double>({3, 2}, {1.5, 1.});
+            jitter(mesh, 0.2, 3u);
+            network = test::network_at_rest<2, double>(mesh.nodes, edges(mesh));
+            if (cells) {
+                add_volume_cells(network, mesh);
+            }
+            clamped = {0, 4, 8};
+        } else {
+            auto mesh = tetrahedron_grid<double>({2, 1, 1}, {1., 0.5, 0.5});
+            jitter(mesh, 0.2, 3u);
+            network = test::network_at_rest<3, double>(mesh.nodes, edges(mesh));
+            if (cells) {
+                add_volume_cells(network, mesh);
+            }
+            clamped = {0, 3, 6, 9};
+        }
+        for (Index e = 0; e < network.n_springs(); ++e) {
+            network.stiffness(e) = random(0.5, 2.);
+            network.damping(e) = random(0.01, 0.05);
+        }
+        for (Index c = 0; c < network.n_cells(); ++c) {
+            network.volume_stiffness(c) = random(0.2, 1.);
+        }
+        network.mass *= 0.1;
+    }
+
+    [[nodiscard]] Motion<Dim, double> static_case(double force, unsigned seed) const {
+        Random random(seed);
+        Scenario<Dim, double> scenario;
+        scenario.name = "static";
+        scenario.clamps.push_back({clamped, {}});
+        NodalLoad<Dim, double> load;
+        for (int i = 0; i < network.n_nodes(); ++i) {
+            load.nodes.push_back(i);
+        }
+        load.forces = random.points<Dim, double>(network.n_nodes(), force);
+        scenario.loads.push_back(load);
+        const auto rest = equilibrium(network, scenario);
+        REQUIRE(rest.status == Status::converged);
+        REQUIRE(rest.stable);
+        Motion<Dim, double> motion;
+        motion.name = "static";
+        motion.rest_positions = network.rest_positions;
+        motion.clamped = clamped;
+        motion.times = {0.};
+        motion.positions = {rest.positions};
+        motion.velocities = {Points<Dim, double>::Zero(Dim, network.n_nodes())};
+        motion.accelerations = motion.velocities;
+        motion.external_forces = {load.forces};
+        return motion;
+    }
+
+    /// Let go from a stretched shape, under a constant force, one clamped node driven.
+    [[nodiscard]] Motion<Dim, double> swing(int frames, double dt, unsigned seed) const {
+        Random random(seed);
+        Scenario<Dim, double> scenario;
+        scenario.name = "swing";
+        Clamp<Dim, double> clamp{clamped, {}};
+        clamp.position = [](const Vector<Dim, double>& rest, double time) {
+            Vector<Dim, double> x = rest;
+            x(1) += 0.05 * std::sin(2 * time);
+            return x;
+        };
+        scenario.clamps.push_back(clamp);
+        scenario.initial_positions = network.rest_positions + random.points<Dim, double>(network.n_nodes(), 0.05);
+        scenario.initial_velocities = random.points<Dim, double>(network.n_nodes(), 0.1);
+        for (int node : clamped) {
+            scenario.initial_positions.col(node) = network.rest_positions.col(node);
+            scenario.initial_velocities.col(node).setZero();
+        }
+        NodalLoad<Dim, double> load;
+        load.nodes = {static_cast<int>(network.n_nodes()) - 1};
+        load.forces = random.points<Dim, double>(1, 0.1);
+        scenario.loads.push_back(load);
+        SymplecticEulerOptions<double> fine;
+        fine.step_fraction = 0.02;
+        SymplecticEuler<Dim, double> stepper(network, fine);
+        auto recording = record_stepper(stepper, scenario, {.dt = dt, .frames = frames});
+        REQUIRE(recording.status == Status::converged);
+        return recording.motion;
+    }
+};
+
+/// A network whose values are off, as a prior.
+template <int Dim>
+SpringNetwork<Dim, double> disturbed(SpringNetwork<Dim, double> network, double most, unsigned seed) {
+    Random random(seed);
+    for (Index e = 0; e < network.n_springs(); ++e) {
+        network.stiffness(e) *= std::exp(random(-most, most));
+        network.damping(e) *= std::exp(random(-most, most));
+    }
+    for (Index c = 0; c < network.n_cells(); ++c) {
+        network.volume_stiffness(c) += random(-most, most);
+    }
+    return network;
+}
+
+TrajectoryOptions everything() {
+    TrajectoryOptions options;
+    options.parameters.damping.fit = true;
+    options.parameters.rest_length.fit = true;
+    options.prior_weight = 1e-3;
+    return options;
+}
+
+template <int Dim>
+void check_gradient(const TrajectoryProblem<Dim>& problem, unsigned seed) {
+    Random random(seed);
+    Values<double> theta(problem.n_unknowns());
+    for (double& value : theta) {
+        value = random(-0.2, 0.2);
+    }
+    TrajectoryPoint<Dim> point(problem);
+    REQUIRE(point.move_to(theta));
+    Values<double> gradient;
+    REQUIRE(point.gradient(gradient));
+    const double step = 1e-4;
+    TrajectoryPoint<Dim> other(problem);
+    for (Index u = 0; u < theta.size(); u += 3) {
+        CAPTURE(u);
+        Values<double> moved = theta;
+        moved(u) += step;
+        REQUIRE(other.move_to(moved, &point));
+        const double above = other.value();
+        moved(u) -= 2 * step;
+        REQUIRE(other.move_to(moved, &point));
+        const double difference = (above - other.value()) / (2 * step);
+        CHECK(test::relative(gradient(u), difference, gradient.cwiseAbs().maxCoeff()) < 2e-6);
+    }
+}
+
+} // namespace
+
+TEST_CASE_TEMPLATE("the adjoint gradient is that of finite differences", T, Dimension<2>, Dimension<3>) {
+    constexpr int Dim = T::value;
+    const Fixture<Dim> fixture(true);
+    const auto prior = disturbed(fixture.network, 0.3, 9);
+    auto options = everything();
+    SUBCASE("statics at large strain") {
+        options.parameters.damping.fit = false;
+        check_gradient(TrajectoryProblem<Dim>(prior, std::vector{fixture.static_case(0.1, 1), fixture.static_case(0.2, 2)},
+                                              options),
+                       1);
+    }
+    SUBCASE("midpoint steps, several windows, few checkpoints") {
+        options.horizon = 4;
+        options.window_stride = 3;
+        options.steps_per_frame = 3;
+        options.checkpoint_interval = 5;
+        check_gradient(TrajectoryProblem<Dim>(prior, std::vector{fixture.swing(12, 0.15, 1)}, options), 2);
+    }
+    SUBCASE("implicit Euler, whole motion, beside statics") {
+        options.rule = PredictionRule::implicit_euler;
+        check_gradient(
+            TrajectoryProblem<Dim>(prior, std::vector{fixture.swing(8, 0.2, 3), fixture.static_case(0.1, 3)}, options),
+            3);
+    }
+    SUBCASE("damping that follows stiffness, ties") {
+        options.parameters.damping.fit = false;
+        options.parameters.rest_length.fit = false;
+        options.parameters.damping_per_stiffness = 0.05;
+        options.parameters.stiffness.ties.resize(static_cast<std::size_t>(prior.n_springs()));
+        for (std::size_t e = 0; e < options.parameters.stiffness.ties.size(); ++e) {
+            options.parameters.stiffness.ties[e] = static_cast<int>(e % 4);
+        }
+        check_gradient(TrajectoryProblem<Dim>(prior, std::vector{fixture.swing(10, 0.15, 5)}, options), 4);
+    }
+}
+
+TEST_CASE_TEMPLATE("products with the Gauss-Newton matrix are those of its dense form and of finite differences", T,
+                   Dimension<2>, Dimension<3>) {
+    constexpr int Dim = T::value;
+    const Fixture<Dim> fixture(true);
+    const auto prior = disturbed(fixture.network, 0.3, 9);
+    TrajectoryOptions options;
+    options.prior_weight = 1e-3;
+    // So small that the matrix at the rest shape is that at the equilibrium.
+    const TrajectoryProblem<Dim> problem(
+        prior, std::vector{fixture.static_case(1e-8, 1), fixture.static_case(1e-8, 2), fixture.static_case(1e-8, 3)},
+        options);
+    TrajectoryPoint<Dim> point(problem);
+    const Values<double> theta = Values<double>::Zero(problem.n_unknowns());
+    REQUIRE(point.move_to(theta));
+    REQUIRE(point.has_dense());
+    const DenseMatrix<double> dense = point.dense();
+    DenseMatrix<double> products(theta.size(), theta.size());
+    for (Index u = 0; u < theta.size(); ++u) {
+        products.col(u) = point.product(Values<double>::Unit(theta.size(), u));
+    }
+    CHECK(test::relative_difference(products, dense) < 1e-6);
+    CHECK(test::relative_difference(products, products.transpose().eval()) < 1e-6);
+
+    // J' W J is the curvature of J along a direction where the residual is that of the reference itself.
+    TrajectoryOptions bare;
+    bare.prior_weight = 0;
+    const TrajectoryProblem<Dim> own(fixture.network, std::vector{fixture.swing(6, 0.1, 4)}, [&] {
+        auto fine = bare;
+        fine.steps_per_frame = 2;
+        fine.parameters.damping.fit = true;
+        return fine;
+    }());
+    TrajectoryPoint<Dim> truth(own);
+    const Values<double> zero = Values<double>::Zero(own.n_unknowns());
+    REQUIRE(truth.move_to(zero));
+    const Values<double> diagonal = truth.curvature(400);
+    for (Index u = 0; u < zero.size(); u += 5) {
+        CAPTURE(u);
+        const double entry = truth.product(Values<double>::Unit(zero.size(), u))(u);
+        CHECK(entry >= 0);
+        CHECK(diagonal(u) >= entry / 2); // 400 probes: 7 % of standard deviation
+        CHECK(diagonal(u) <= entry * 2);
+    }
+}
+
+TEST_CASE_TEMPLATE("what springs did is found again from their motion", T, Dimension<2>, Dimension<3>) {
+    constexpr int Dim = T::value;
+    const Fixture<Dim> fixture(false);
+    const auto prior = disturbed(fixture.network, 0.5, 4);
+    TrajectoryOptions options;
+    options.prior_weight = 1e-12;
+    GaussNewtonOptions engine;
+    engine.max_iterations = 100;
+    engine.tolerance = 1e-8;
+    engine.max_cg_iterations = 200;
+    engine.cg_tolerance = 1e-3;
+    auto network = prior;
+    SUBCASE("equilibria at large strain") {
+        std::vector<Motion<Dim, double>> cases;
+        for (unsigned seed = 1; seed <= 12; ++seed) {
+            cases.push_back(fixture.static_case(0.1, seed));
+        }
+        const TrajectoryProblem<Dim> problem(prior, cases, options);
+        const auto report = gauss_newton(problem, engine);
+        CHECK(usable(report.status));
+        CHECK(report.misfit < 1e-5);
+        apply(problem, report, network);
+        for (Index e = 0; e < network.n_springs(); ++e) {
+            const auto is_clamped = [&](int node) {
+                return std::count(fixture.clamped.begin(), fixture.clamped.end(), node) > 0;
+            };
+            const bool held = is_clamped(network.springs(0, e)) && is_clamped(network.springs(1, e));
+            CAPTURE(e);
+            if (held) { // no motion says anything
+                CHECK(network.stiffness(e) == prior.stiffness(e));
+                CHECK(report.data_share(e) == 0);
+            } else {
+                CHECK(test::relative(network.stiffness(e), fixture.network.stiffness(e),
+                                     fixture.network.stiffness(e)) < 1e-3);
+            }
+        }
+    }
+    SUBCASE("a swing, with its damping") {
+        options.parameters.damping.fit = true;
+        options.steps_per_frame = 4;
+        engine.max_cg_iterations = 40;
+        engine.max_iterations = 30;
+        const TrajectoryProblem<Dim> problem(
+            prior, std::vector{fixture.swing(24, 0.05, 1), fixture.swing(24, 0.05, 2), fixture.swing(24, 0.05, 3)},
+            options);
+        const auto report = gauss_newton(problem, engine);
+        CHECK(usable(report.status));
+        CHECK(report.misfit < 2e-3); // what is left is the integrators' difference
+        apply(problem, report, network);
+        Index near = 0;
+        for (Index e = 0; e < network.n_springs(); ++e) {
+            near += std::abs(std::log(network.stiffness(e) / fixture.network.stiffness(e))) < 0.05 ? 1 : 0;
+        }
+        CHECK(near >= network.n_springs() * 8 / 10);
+        CHECK(report.misfit < report.misfit_start / 20);
+    }
+}
+
+TEST_CASE_TEMPLATE("a horizon of one short step is the acceleration fit", T, Dimension<2>, Dimension<3>) {
+    constexpr int Dim = T::value;
+    const Fixture<Dim> fixture(false);
+    double last = 1;
+    for (const double dt : {0.02, 0.005}) {
+        auto motion = fixture.swing(40, dt, 6);
+        // Forces that springs cannot explain.
+        Random random(8);
+        const auto unknown = random.points<Dim, double>(motion.n_nodes(), 0.004);
+        for (auto& frame : motion.external_forces) {
+            frame += unknown;
+        }
+        // The acceleration that each window shows between its two frames.
+        auto prior = disturbed(fixture.network, 0.2, 7);
+        prior.damping = fixture.network.damping;
+        for (std::size_t t = 0; t + 1 < motion.positions.size(); ++t) {
+            motion.accelerations[t] =
+                2 / (dt * dt) * (motion.positions[t + 1] - motion.positions[t] - dt * motion.velocities[t]);
+        }
+        TrajectoryOptions options;
+        options.prior_weight = 0;
+        options.horizon = 1;
+        const TrajectoryProblem<Dim> problem(prior, std::vector{motion}, options);
+        CHECK(problem.n_windows() == 39);
+        GaussNewtonOptions engine;
+        engine.tolerance = 1e-12;
+        engine.max_iterations = 200;
+        engine.max_cg_iterations = 300;
+        engine.cg_tolerance = 1e-6;
+        const auto report = gauss_newton(problem, engine);
+        auto network = prior;
+        apply(problem, report, network);
+
+        AccelerationOptions<double> accelerations;
+        accelerations.parameters.stiffness.lower = 1e-3;
+        const FitProblem quadratic =
+            acceleration_problem<Dim, double>(prior, {excerpt(motion, 0, motion.n_frames() - 1)}, accelerations);
+        DominantTermOptions sweeps;
+        sweeps.max_sweeps = 20000;
+        sweeps.tolerance = 1e-14;
+        auto other = prior;
+        apply(quadratic, dominant_term(quadratic, sweeps), other);
+        double distance = 0;
+        for (Index e = 0; e < network.n_springs(); ++e) {
+            if (report.data_share(e) > 0) {
+                distance = std::max(distance, test::relative(network.stiffness(e), other.stiffness(e), 1.));
+            }
+        }
+        CAPTURE(dt);
+        CHECK(distance < last / 2);
+        last = distance;
+    }
+    CHECK(last < 0.05);
+}
