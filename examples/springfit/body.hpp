@@ -4,6 +4,7 @@
 #include <string>
 #include <variant>
 
+#include <springfit/closed_form/isotropic_solid.hpp>
 #include <springfit/io/motion_file.hpp>
 #include <springfit/mesh/mesh.hpp>
 #include <springfit/network/spring_network.hpp>
@@ -31,18 +32,11 @@ using AnyMesh =
 template <int Dim>
 [[nodiscard]] AnyMesh mesh_of(const springfit::io::RecordedMotion<Dim, double>& recorded, const std::string& path);
 
-/// The stiffness that a published formula gives every spring.
-struct ClosedFormResult {
-    std::string name;
-    springfit::Values<double> stiffness; ///< [n_springs], N/m
-    springfit::Index n_clamped = 0;      ///< negative values that were set to 0
-};
-
 /// A body as springs, whatever its cells are.
 template <int Dim>
 struct Discretisation {
     springfit::SpringNetwork<Dim, double> network; ///< springs, rest lengths and masses; stiffness 0 as yet
-    std::vector<ClosedFormResult> closed_forms;    ///< all that hold for these cells
+    std::vector<springfit::NamedClosedForm<double>> closed_forms; ///< all that hold for these cells, at least one
     springfit::io::MotionTopology topology;        ///< cells and springs, for the motion files
     std::string cell_name;
     std::vector<int> surface; ///< nodes on the boundary

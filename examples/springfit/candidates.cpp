@@ -24,13 +24,14 @@ void set_damping(SpringNetwork<Dim, double>& network, double beta, const FitOpti
                                                  : stiffness_proportional_damping(network, beta);
 }
 
-/// Elastic energy of the network summed over all frames of motions, J.
+/// Elastic energy that motions put into the network, summed over all their frames, J; a preload at rest does not count.
 template <int Dim>
 double energy_in(const SpringNetwork<Dim, double>& network, const std::vector<Motion<Dim, double>>& motions) {
+    const double at_rest = elastic_energy(network, network.rest_positions);
     double energy = 0;
     for (const auto& motion : motions) {
         for (const auto& positions : motion.positions) {
-            energy += elastic_energy(network, positions);
+            energy += elastic_energy(network, positions) - at_rest;
         }
     }
     return energy;
@@ -46,8 +47,9 @@ std::vector<Candidate<Dim>> make_candidates(const Discretisation<Dim>& body, con
         Candidate<Dim> candidate;
         candidate.name = closed.name;
         candidate.network = body.network;
-        candidate.network.stiffness = closed.stiffness;
-        candidate.n_clamped = closed.n_clamped;
+        apply(closed.form, candidate.network);
+        candidate.n_clamped = closed.form.n_clamped;
+        candidate.caveat = closed.form.caveat;
         set_damping<Dim>(candidate.network, cases.stiffness_damping, options);
         candidates.push_back(std::move(candidate));
     }

@@ -16,7 +16,8 @@ struct Candidate {
     std::string name;
     springfit::SpringNetwork<Dim, double> network;
     std::optional<springfit::FitReport> fit; ///< empty for a closed form
-    springfit::Index n_clamped = 0;          ///< springs of a closed form that were negative and set to 0
+    springfit::Index n_clamped = 0;          ///< springs of a closed form that would be negative and are 0
+    std::string caveat;                      ///< for what a closed form is exact, where not for this body
     double seconds = 0;
     double held_out = 0;
     double training = 0;

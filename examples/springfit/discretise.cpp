@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <springfit/closed_form/baudet.hpp>
-#include <springfit/closed_form/cubic_cell.hpp>
-#include <springfit/closed_form/projection.hpp>
-#include <springfit/closed_form/van_gelder.hpp>
+#include <springfit/closed_form/all.hpp>
 #include <springfit/mesh/topology.hpp>
 #include <springfit/network/topology.hpp>
 
@@ -11,32 +8,6 @@
 namespace program {
 
 using namespace springfit;
-
-namespace {
-
-/// Every published formula that holds for the cells, the most common one first.
-template <int Dim, CellType Cell>
-std::vector<ClosedFormResult> closed_forms(const Mesh<Dim, double, Cell>& mesh, const NodePairs& springs,
-                                           const IsotropicSolid& solid) {
-    std::vector<ClosedFormResult> results;
-    const auto add = [&](const char* name, ClosedForm<double> form) {
-        results.push_back({name, std::move(form.stiffness), form.n_clamped});
-    };
-    if constexpr (SimplexCell<Cell>) {
-        add("van_gelder", van_gelder(mesh, springs, solid));
-        if constexpr (Cell::dimension == 2) {
-            add("van_gelder_nu", van_gelder_any_poisson(mesh, springs, solid));
-        }
-        add("projection", projection(mesh, springs, solid));
-    } else if constexpr (std::same_as<Cell, Quad4>) {
-        add("baudet", baudet(mesh, springs, solid));
-    } else {
-        add("cubic_cell", cubic_cell(mesh, springs, solid));
-    }
-    return results;
-}
-
-} // namespace
 
 template <int Dim>
 Discretisation<Dim> discretise(const AnyMesh& any, const FitOptions& options) {

@@ -167,7 +167,7 @@ int fit_body(const AnyMesh& mesh, std::vector<Motion<Dim, double>> recorded, std
         }
         if (candidate.n_clamped > 0) {
             warnings.push_back(text(candidate.name, ": ", candidate.n_clamped,
-                                    " springs came out negative and were set to 0"));
+                                    " springs would be negative and were set to 0"));
         }
     }
     const Candidate<Dim>& chosen = candidates[best];
@@ -198,6 +198,9 @@ int fit_body(const AnyMesh& mesh, std::vector<Motion<Dim, double>> recorded, std
         fits[candidate.name] = candidate.fit ? describe(*candidate.fit) : io::Json::object();
         fits[candidate.name]["relative_stiffness"] = candidate.relative_stiffness;
         fits[candidate.name]["seconds"] = candidate.seconds;
+        if (!candidate.caveat.empty()) {
+            fits[candidate.name]["caveat"] = candidate.caveat;
+        }
     }
     report.warnings = warnings;
     report.detail = {{"fits", fits},

@@ -4,15 +4,9 @@
 /// Everything that needs Eigen alone. Meshing (`cgal/`), the exact fit (`ipopt/`), files (`io/`) and threads
 /// (`parallel/`) are included one by one.
 
-#include <springfit/closed_form/baudet.hpp>
+#include <springfit/closed_form/all.hpp>
 #include <springfit/closed_form/cauchy_split.hpp>
-#include <springfit/closed_form/cubic_cell.hpp>
 #include <springfit/closed_form/delingette.hpp>
-#include <springfit/closed_form/lloyd.hpp>
-#include <springfit/closed_form/natsupakpong.hpp>
-#include <springfit/closed_form/projection.hpp>
-#include <springfit/closed_form/san_vicente.hpp>
-#include <springfit/closed_form/van_gelder.hpp>
 #include <springfit/core/version.hpp>
 #include <springfit/fem/dynamics.hpp>
 #include <springfit/fem/loads.hpp>

@@ -44,9 +44,9 @@ template <int Dim, std::floating_point Scalar>
                          "exact for Poisson's ratio 1/3 alone; in shear for any");
 }
 
-/// Braced hexahedral boxes in the manner of Baudet et al. [Baudet2009], by the two conditions of the rectangle: every shear has the
-/// modulus mu = E / (2 (1 + nu)), and a stretch eps with the contraction nu eps across has the stress E eps. The form
-/// is our derivation; no printed one is known to us. Diagonals as in `cubic_cell`, edges
+/// Braced hexahedral boxes in the manner of Baudet et al. [Baudet2009], by the two conditions of the rectangle: every
+/// shear has the modulus mu = E / (2 (1 + nu)), and a stretch eps with the contraction nu eps across has the stress
+/// E eps. The form is our derivation; no printed one is known to us. Diagonals as in `cubic_cell`, edges
 ///
 ///     k_edge,p = (1 + 2 nu) mu V / (2 a_p^2) - sum_q a_p^2 k_face,pq / (a_p^2 + a_q^2) - a_p^2 k_body / s ,
 ///

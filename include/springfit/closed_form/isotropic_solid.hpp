@@ -23,7 +23,7 @@ struct IsotropicSolid {
 template <std::floating_point Scalar>
 struct ClosedForm {
     Values<Scalar> stiffness; ///< k_e >= 0 [n_springs], N/m
-    Index n_clamped = 0;      ///< values that came out negative and were set to 0
+    Index n_clamped = 0;      ///< values that would be negative and are 0 instead
     Index n_without_cell = 0; ///< springs of no cell, as of a second ring: the formula says nothing, they get 0
     /// l_e > 0 [n_springs], m, of a form whose springs pull or push at rest; empty: the distance of the ends.
     Values<Scalar> rest_length{};

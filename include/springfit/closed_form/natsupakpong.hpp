@@ -65,8 +65,8 @@ template <int Dim, std::floating_point Scalar, CellType Cell>
         }
     }
     auto result = detail::close(std::move(stiffness), touched, most_missed < detail::exactness,
-                                text("nearest in the Frobenius norm; misses up to ", std::ceil(100 * most_missed - 1e-6),
-                                     " % of a cell's finite element stiffness"));
+                                text("nearest in the Frobenius norm; misses up to ",
+                                     std::ceil(100 * most_missed - 1e-6), " % of a cell's finite element stiffness"));
     for (Index e = 0; e < springs.cols(); ++e) {
         result.n_clamped += touched[static_cast<std::size_t>(e)] && !(result.stiffness(e) > 0) ? 1 : 0;
     }
