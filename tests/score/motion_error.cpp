@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tolerance.hpp"
 
-#include <springfit/motion/record.hpp>
+#include <springfit/motion/record_static.hpp>
 #include <springfit/score/motion_error.hpp>
+#include <springfit/step/static_solver.hpp>
 
 #include "../step/example.hpp"
 
@@ -105,6 +106,44 @@ TEST_CASE_TEMPLATE("a network has no error against itself and a plain one where 
     });
     const auto again = motion_error(softer, set.scenarios, set.references, {}, {.execution = backwards});
     CHECK(again.error == different.error);
+}
+
+TEST_CASE_TEMPLATE("static cases are scored under clamps of their own", T, SPRINGFIT_TEST_SPACES) {
+    constexpr int dim = T::dimension;
+    using Scalar = typename T::Scalar;
+    const auto network = test::random_network<dim, Scalar>(Scalar(0));
+    std::vector<Scenario<dim, Scalar>> scenarios;
+    for (const auto& held : {std::vector<int>{0, 1, 2, 3}, {4, 5, 6, 7, 8}, {9, 2, 5, 7}, {0, 1, 2, 3}}) {
+        Scenario<dim, Scalar> scenario;
+        scenario.clamps.push_back({held, {}});
+        scenario.gravity.push_back({Vector<dim, Scalar>::Unit(1) * Scalar(-3), {}});
+        scenarios.push_back(scenario);
+    }
+    std::vector<Motion<dim, Scalar>> references;
+    for (const auto& recording : record_statics(network, scenarios)) {
+        CHECK(recording.status == Status::converged);
+        references.push_back(recording.motion);
+    }
+    const auto same = motion_error(network, scenarios, references);
+    CHECK(same.status == Status::converged);
+    CHECK(same.error < static_cast<double>(test::rounding<Scalar>(1000)));
+    // Each case is what it is alone.
+    auto softer = network;
+    softer.stiffness *= Scalar(0.9);
+    const auto all = motion_error(softer, scenarios, references);
+    CHECK(all.case_errors[0] == all.case_errors[3]);
+    for (std::size_t c = 0; c < 3; ++c) {
+        const auto alone = motion_error<dim, Scalar>(softer, {scenarios[c]}, {references[c]});
+        CHECK(alone.error == all.case_errors[c]);
+        CHECK(alone.error > 0.05);
+        CHECK(alone.error < 0.5);
+    }
+    // From rest one iteration is too few, at the reference's positions none is needed.
+    CHECK(equilibrium(network, scenarios[0], {.max_iterations = 1}).status != Status::converged);
+    const auto brief = motion_error(network, scenarios, references, {}, {.max_iterations = 1});
+    CHECK(brief.status == Status::converged);
+    CHECK(brief.error < static_cast<double>(test::rounding<Scalar>(1000)));
+    CHECK_THROWS_AS((void)motion_error(network, scenarios, references, {}, {.max_iterations = 0}), InvalidArgument);
 }
 
 TEST_CASE("frames may be at any times") {

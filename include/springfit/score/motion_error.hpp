@@ -23,7 +23,8 @@ struct MotionError {
 template <std::floating_point Scalar>
 struct MotionErrorOptions {
     SymplecticEulerOptions<Scalar> step{};
-    Execution execution{}; ///< cases are independent of each other
+    int max_iterations = 500; ///< Newton iterations of a static case, >= 1
+    Execution execution{};    ///< cases are independent of each other
 };
 
 namespace detail {
@@ -104,7 +105,8 @@ template <int Dim, std::floating_point Scalar>
 }
 
 /// Error of a network on a set of cases: it is simulated under each scenario at the frame times of its reference
-/// (`simulate`); a reference of a single frame is a static equilibrium and is compared with the network's own.
+/// (`simulate`); a reference of a single frame is a static equilibrium and is compared with the network's own under the
+/// clamps of the scenario, found from the scenario's start or, where that fails, from the reference's positions.
 ///
 /// The sums run over the nodes that are not clamped in the reference. A case that diverges, takes too many sub-steps or
 /// finds no equilibrium makes the error infinite, and the status says why: a network is not scored on the part of a
@@ -117,6 +119,7 @@ motion_error(const SpringNetwork<Dim, Scalar>& network, const std::vector<Scenar
              const MotionErrorOptions<Scalar>& options = {}) {
     require(scenarios.size() == references.size(), "scenarios", text(references.size(), ", one per reference"),
             scenarios.size());
+    require(options.max_iterations >= 1, "max_iterations", "at least one iteration", options.max_iterations);
     std::vector<FreeNodes> free;
     double n_frames = 0;
     for (std::size_t c = 0; c < references.size(); ++c) {
@@ -146,7 +149,12 @@ motion_error(const SpringNetwork<Dim, Scalar>& network, const std::vector<Scenar
         if (reference.n_frames() == 1) {
             EquilibriumOptions<Dim, Scalar> statics;
             statics.time = reference.times.front();
-            const auto rest = equilibrium(network, scenarios[c], statics);
+            statics.max_iterations = options.max_iterations;
+            auto rest = equilibrium(network, scenarios[c], statics);
+            if (rest.status != Status::converged) {
+                statics.start = reference.positions.front();
+                rest = equilibrium(network, scenarios[c], statics);
+            }
             statuses[c] = rest.status;
             if (rest.status == Status::converged && !compare(0, rest.positions)) {
                 statuses[c] = Status::interrupted;
