@@ -4,7 +4,6 @@
 #include <springfit/fit/dominant_term.hpp>
 #include <springfit/fit/trajectory.hpp>
 #include <springfit/motion/record.hpp>
-#include <springfit/motion/replay.hpp>
 #include <springfit/network/volume.hpp>
 #include <springfit/step/equilibrium.hpp>
 #include <springfit/step/symplectic_euler.hpp>
@@ -303,25 +302,46 @@ TEST_CASE_TEMPLATE("a horizon of one short step is the acceleration fit", T, Dim
     const Fixture<Dim> fixture(false);
     double last = 1;
     for (const double dt : {0.02, 0.005}) {
-        auto motion = fixture.swing(40, dt, 6);
-        // Forces that springs cannot explain.
+        // Forty windows of one step, one after another in one motion, and their first frames with the acceleration that
+        // each window shows.
+        Motion<Dim, double> windows;
+        Motion<Dim, double> starts;
         Random random(8);
-        const auto unknown = random.points<Dim, double>(motion.n_nodes(), 0.004);
-        for (auto& frame : motion.external_forces) {
-            frame += unknown;
+        for (unsigned seed = 1; seed <= 40; ++seed) {
+            auto motion = fixture.swing(2, dt, seed);
+            const auto unknown = random.points<Dim, double>(motion.n_nodes(), 0.004); // forces springs cannot explain
+            for (std::size_t t = 0; t < 2; ++t) {
+                motion.external_forces[t] += unknown;
+                motion.times[t] += 2 * dt * (seed - 1);
+            }
+            for (int node : fixture.clamped) {
+                motion.velocities[0].col(node) = (motion.positions[1].col(node) - motion.positions[0].col(node)) / dt;
+            }
+            motion.accelerations[0] =
+                2 / (dt * dt) * (motion.positions[1] - motion.positions[0] - dt * motion.velocities[0]);
+            const auto append = [&](Motion<Dim, double>& to, std::size_t frames) {
+                const auto extend = [&](auto& own, const auto& more) {
+                    own.insert(own.end(), more.begin(), more.begin() + static_cast<std::ptrdiff_t>(frames));
+                };
+                to.rest_positions = motion.rest_positions;
+                to.clamped = motion.clamped;
+                extend(to.times, motion.times);
+                extend(to.positions, motion.positions);
+                extend(to.velocities, motion.velocities);
+                extend(to.accelerations, motion.accelerations);
+                extend(to.external_forces, motion.external_forces);
+            };
+            append(windows, 2);
+            append(starts, 1);
         }
-        // The acceleration that each window shows between its two frames.
         auto prior = disturbed(fixture.network, 0.2, 7);
         prior.damping = fixture.network.damping;
-        for (std::size_t t = 0; t + 1 < motion.positions.size(); ++t) {
-            motion.accelerations[t] =
-                2 / (dt * dt) * (motion.positions[t + 1] - motion.positions[t] - dt * motion.velocities[t]);
-        }
         TrajectoryOptions options;
         options.prior_weight = 0;
         options.horizon = 1;
-        const TrajectoryProblem<Dim> problem(prior, std::vector{motion}, options);
-        CHECK(problem.n_windows() == 39);
+        options.window_stride = 2;
+        const TrajectoryProblem<Dim> problem(prior, std::vector{windows}, options);
+        CHECK(problem.n_windows() == 40);
         GaussNewtonOptions engine;
         engine.tolerance = 1e-12;
         engine.max_iterations = 200;
@@ -333,8 +353,7 @@ TEST_CASE_TEMPLATE("a horizon of one short step is the acceleration fit", T, Dim
 
         AccelerationOptions<double> accelerations;
         accelerations.parameters.stiffness.lower = 1e-3;
-        const FitProblem quadratic =
-            acceleration_problem<Dim, double>(prior, {excerpt(motion, 0, motion.n_frames() - 1)}, accelerations);
+        const FitProblem quadratic = acceleration_problem<Dim, double>(prior, {starts}, accelerations);
         DominantTermOptions sweeps;
         sweeps.max_sweeps = 20000;
         sweeps.tolerance = 1e-14;

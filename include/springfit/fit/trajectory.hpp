@@ -80,7 +80,8 @@ Values<double> reduced_newton_step(const Product& product, const Values<double>&
     Values<double> residual = -gradient;
     reduce(residual);
     const double goal = tolerance * residual.norm();
-    const Values<double> inverse = (diagonal.array() + mu).inverse();
+    Values<double> inverse = (diagonal.array() + mu).inverse();
+    reduce(inverse);
     Values<double> z = inverse.cwiseProduct(residual);
     Values<double> direction = z;
     double rz = residual.dot(z);
@@ -169,6 +170,10 @@ template <int Dim>
                 dense.resize(0, 0);
                 diagonal = point->curvature(options.probes).array() + lambda;
             }
+            const double least = 1e-14 * diagonal.maxCoeff(); // nothing says anything of what is below
+            for (Index u = 0; u < n; ++u) {
+                active[static_cast<std::size_t>(u)] = active[static_cast<std::size_t>(u)] || !(diagonal(u) > least);
+            }
             fresh = false;
         }
         if (report.gradient_max <= 1e-14 || small_gains >= 2) {
@@ -212,6 +217,10 @@ template <int Dim>
                               trial->value() < point->value() && trial->gradient(trial_gradient);
         if (!accepted) {
             ++report.rejected;
+            if (std::abs(gradient.dot(step)) < 1e-12 * point->value()) { // no more to gain than rounding
+                report.status = Status::converged;
+                break;
+            }
             mu = std::max(8 * mu, 0.05 * diagonal.maxCoeff() / 8);
             if (mu > 1e8 * diagonal.maxCoeff() || step.cwiseAbs().maxCoeff() < 1e-10) {
                 report.status = Status::stalled;
