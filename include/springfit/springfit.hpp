@@ -15,13 +15,16 @@
 #include <springfit/fit/dominant_term.hpp>
 #include <springfit/mesh/structured.hpp>
 #include <springfit/motion/load_cases.hpp>
-#include <springfit/motion/record.hpp>
+#include <springfit/motion/noise.hpp>
+#include <springfit/motion/record_static.hpp>
 #include <springfit/motion/replay.hpp>
+#include <springfit/motion/strain.hpp>
 #include <springfit/motion/transfer.hpp>
 #include <springfit/motion/user_reference.hpp>
 #include <springfit/network/damping.hpp>
 #include <springfit/network/forces.hpp>
 #include <springfit/network/topology.hpp>
+#include <springfit/score/frequency.hpp>
 #include <springfit/score/motion_error.hpp>
 #include <springfit/solve/clique_matrix.hpp>
 #include <springfit/solve/newton.hpp>
@@ -29,4 +32,5 @@
 #include <springfit/step/biquadratic_euler.hpp>
 #include <springfit/step/equilibrium.hpp>
 #include <springfit/step/implicit_euler.hpp>
+#include <springfit/step/static_solver.hpp>
 #include <springfit/step/symplectic_euler.hpp>

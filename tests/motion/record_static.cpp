@@ -4,6 +4,7 @@
 #include <springfit/fem/statics.hpp>
 #include <springfit/mesh/structured.hpp>
 #include <springfit/motion/record_static.hpp>
+#include <springfit/network/topology.hpp>
 #include <springfit/step/static_solver.hpp>
 
 using namespace springfit;
@@ -116,6 +117,36 @@ TEST_CASE_TEMPLATE("springs along the axes give way by F / k each", T, SPRINGFIT
     auto loose = network;
     loose.stiffness(0) = 0;
     CHECK(linear_responses(loose, {scenario})[0].cols() == 0);
+}
+
+TEST_CASE_TEMPLATE("a network's linear response is its answer to a small load, cells included", T,
+                   test::Space<2, double>, test::Space<3, double>) {
+    constexpr int dim = T::dimension;
+    const auto model = block<dim>(fem::LinearElastic{1e4, 0.3}); // for its mesh
+    auto network = springs_along_edges(model.mesh(), {.volume = true, .density = 10.});
+    network.stiffness.setLinSpaced(network.n_springs(), 100, 200);
+    network.volume_stiffness.setLinSpaced(network.n_cells(), -20, 300);
+    network.rest_length.array() *= 1.001; // springs that push at rest: the response is that to their forces as well
+    auto cases = pushes<dim>(network.rest_positions, 0.);
+    const auto sprung = linear_responses(network, cases);
+    const auto loaded = pushes<dim>(network.rest_positions, 1.);
+    const auto responses = linear_responses(network, loaded);
+    for (std::size_t c = 0; c + 1 < cases.size(); ++c) {
+        CHECK(sprung[c].norm() > 0);
+        CHECK(sprung[c] == sprung[c % 2]); // the same clamps
+        // Linear in the load, and the derivative of the equilibrium at the rest positions.
+        const auto half = pushes<dim>(network.rest_positions, 0.5);
+        const auto between = linear_responses(network, {half[c]}).front();
+        CHECK(test::relative_difference((responses[c] + sprung[c]) / 2, between) < 1e-9);
+    }
+    network.rest_length /= 1.001;
+    const auto straight = linear_responses(network, loaded);
+    for (std::size_t c = 0; c + 1 < cases.size(); ++c) {
+        auto small = loaded[c];
+        small.loads[0].forces *= 1e-4;
+        const Points<dim, double> part = record_static(network, small).motion.positions[0] - network.rest_positions;
+        CHECK((1e4 * part - straight[c]).norm() < 1e-3 * straight[c].norm());
+    }
 }
 
 TEST_CASE_TEMPLATE("many static cases under several clamps are those of one at a time", Mat, fem::LinearElastic,
