@@ -4,6 +4,8 @@
 #include <springfit/fem/statics.hpp>
 #include <springfit/motion/record_static.hpp>
 #include <springfit/motion/strain.hpp>
+#include <springfit/network/topology.hpp>
+#include <springfit/step/static_solver.hpp>
 
 #include "bodies.hpp"
 
@@ -113,4 +115,39 @@ TEST_CASE_TEMPLATE("loads are scaled to the strain that is wanted", T, test::Spa
     CHECK_THROWS_AS((void)scale_to_strain(cases, pairs, mesh.nodes, 0.1,
                                           [](const auto&) { return std::vector<Points<dim, double>>(); }),
                     InvalidArgument);
+}
+
+TEST_CASE("a flat sheet in space answers loads in its plane as the plane body does") {
+    const auto plane = triangle_grid<double>({8, 4}, {2., 1.});
+    const auto sheet = membrane(plane);
+    const fem::LinearElastic material{1e4, 0.3};
+    const fem::Model flat{plane, material, 1000., {.thickness = 0.1}};
+    const fem::Model spatial{sheet, material, 1000., {.thickness = 0.1}};
+    auto body = test::sheet_body<double>();
+    body.masses = spatial.masses();
+    auto cases = random_load_cases(body, {.training = 6, .clamps = 2}).training;
+    const auto factors = scale_to_strain(cases, edges(sheet), sheet.nodes, 0.02,
+                                         [&](const auto& scenarios) { return linear_responses(spatial, scenarios); });
+    const auto recordings = record_statics(spatial, cases);
+    auto network = springs_along_edges(sheet, {.density = 1000., .thickness = 0.1});
+    network.stiffness.setConstant(300);
+    auto plane_network = springs_along_edges(plane, {.density = 1000., .thickness = 0.1});
+    plane_network.stiffness = network.stiffness;
+    for (std::size_t c = 0; c < cases.size(); ++c) {
+        CHECK(factors[c] > 0);
+        CHECK(recordings[c].status == Status::converged);
+        Scenario<2, double> below;
+        below.clamps = {{cases[c].clamps[0].nodes, {}}};
+        below.loads = {{cases[c].loads[0].nodes, cases[c].loads[0].forces.topRows<2>(), {}}};
+        const auto same = [](const Points<3, double>& found, const Points<2, double>& expected) {
+            CHECK(found.row(2).norm() == 0);
+            CHECK((found.topRows<2>() - expected).norm() < 1e-5 * expected.norm());
+        };
+        same(linear_responses(spatial, {cases[c]})[0], linear_responses(flat, {below})[0]);
+        same(linear_responses(network, {cases[c]})[0], linear_responses(plane_network, {below})[0]);
+        // Nothing holds it across its plane.
+        cases[c].gravity = {{Vector<3, double>::UnitZ(), {}}};
+        CHECK(linear_responses(spatial, {cases[c]})[0].cols() == 0);
+        CHECK(linear_responses(network, {cases[c]})[0].cols() == 0);
+    }
 }

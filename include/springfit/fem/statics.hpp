@@ -38,10 +38,11 @@ struct StaticsReport {
 
 /// Static equilibria of a model under one load case after another.
 ///
-/// The pattern of the stiffness and what the solver has learnt of it are kept for as long as the same nodes are clamped,
-/// so sort many load cases by their clamps. Linear systems of solids are solved by conjugate gradients with the diagonal
-/// (in a body of 2000 nodes, a factorisation costs as much as twenty of these), those of plane bodies and membranes, and
-/// of solids where that takes too long, with a factorisation. A model of the concept StaticSolver.
+/// The pattern of the stiffness and what the solver has learnt of it are kept for as long as the same nodes are
+/// clamped, so sort many load cases by their clamps. Linear systems of plane bodies are solved with a factorisation;
+/// those of solids by conjugate gradients with the diagonal (in a body of 2000 nodes, a factorisation costs as much as
+/// twenty of these), and so those of membranes, whose stiffness may be singular: a flat one answers loads in its plane.
+/// A model of the concept StaticSolver.
 template <class M>
 class Statics {
 public:

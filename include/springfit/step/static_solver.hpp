@@ -28,8 +28,8 @@ public:
     }
 
     /// K u = f with K at the rest positions and f the loads and the springs' own forces there: displacement
-    /// `[Dim x n_nodes]`, m. The factorisation is kept while the same nodes are clamped. Status `failed` where the
-    /// springs do not hold the free nodes.
+    /// `[Dim x n_nodes]`, m. The factorisation is kept while the same nodes are clamped. A flat network in space
+    /// answers loads in its plane. Status `failed` where the springs do not resist the loads.
     Status linear_response(const Scenario<Dim, Scalar>& scenario, Scalar time, Points<Dim, Scalar>& displacement) {
         validate(scenario, m_network.n_nodes());
         use_clamps(clamped_nodes(scenario, m_network.n_nodes()));
@@ -40,16 +40,25 @@ public:
         if (m_free.n_free() == 0) {
             return Status::converged;
         }
-        if (!m_is_held) {
-            return Status::failed;
-        }
         Points<Dim, Scalar> forces = external_forces<Dim, Scalar>(scenario, m_network.mass, time);
         add_elastic_forces<Dim, Scalar>(m_network, rest, forces);
         const Values<Scalar> way = displacement.reshaped();
         const Values<Scalar> pull = m_full.matrix().template selfadjointView<Eigen::Lower>() * way;
         forces -= pull.reshaped(Dim, rest.cols());
-        m_free.template scatter<Dim, Scalar>(m_solver.apply_factor(m_free.template gather<Dim, Scalar>(forces)),
-                                             displacement);
+        const Values<Scalar> push = m_free.template gather<Dim, Scalar>(forces);
+        const SymmetricMatrix<Scalar> stiffness = m_held.matrix();
+        Values<Scalar> values;
+        Values<Scalar> answer(push.size());
+        if (m_is_held) {
+            values = m_solver.apply_factor(push);
+        } else if (!m_solver.solve(stiffness, push, values, std::sqrt(std::numeric_limits<Scalar>::epsilon()))) {
+            return Status::failed;
+        }
+        stiffness.multiply(values, answer);
+        if (!((answer - push).norm() <= Scalar(0.01) * push.norm())) {
+            return Status::failed;
+        }
+        m_free.template scatter<Dim, Scalar>(values, displacement);
         return Status::converged;
     }
 
@@ -62,17 +71,23 @@ private:
         m_free = FreeNodes(m_network.n_nodes(), m_clamped);
         m_full = spring_matrix(m_network, FreeNodes(m_network.n_nodes(), {}));
         add_stiffness<Dim, Scalar>(m_network, m_network.rest_positions, Curvature::exact, m_full);
-        auto held = spring_matrix(m_network, m_free);
-        add_stiffness<Dim, Scalar>(m_network, m_network.rest_positions, Curvature::exact, held);
+        m_held = spring_matrix(m_network, m_free);
+        add_stiffness<Dim, Scalar>(m_network, m_network.rest_positions, Curvature::exact, m_held);
         m_solver.reset();
-        m_is_held = detail::is_positive_definite<Scalar>(m_solver, held.matrix());
+        m_solver.set_max_diagonal_iterations(0);
+        m_is_held = detail::is_positive_definite<Scalar>(m_solver, m_held.matrix());
+        if (!m_is_held) { // singular: conjugate gradients stay within what the springs resist
+            m_solver.reset();
+            m_solver.set_max_diagonal_iterations(2000);
+        }
     }
 
     SpringNetwork<Dim, Scalar> m_network;
     std::vector<int> m_clamped;
     FreeNodes m_free;
     CliqueMatrix<Dim, Scalar> m_full; ///< stiffness of all nodes at rest
-    SymmetricSolver<Scalar> m_solver; ///< holds the factor of that of the free ones
+    CliqueMatrix<Dim, Scalar> m_held; ///< of the free ones
+    SymmetricSolver<Scalar> m_solver; ///< holds its factor where it is positive definite
     bool m_is_held = false;
 };
 

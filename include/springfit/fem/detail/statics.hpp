@@ -67,7 +67,8 @@ Statics<M>::Statics(M model, const StaticsOptions<Scalar>& options)
     require(options.tolerance > 0 && options.tolerance < 1, "tolerance", "a value in (0, 1)", options.tolerance);
     require(options.max_iterations >= 1, "max_iterations", "at least one iteration", options.max_iterations);
     require(options.max_halvings >= 0, "max_halvings", "a number not below 0", options.max_halvings);
-    m_solver.set_max_diagonal_iterations(M::is_solid ? detail::diagonal_iterations : 0);
+    const bool is_plane = !M::is_solid && !M::is_membrane;
+    m_solver.set_max_diagonal_iterations(is_plane ? 0 : detail::diagonal_iterations);
 }
 
 template <class M>
