@@ -111,6 +111,12 @@ inline double largest_projected(const Values<double>& gradient, const std::vecto
     return largest;
 }
 
+/// The curvature of the data along each unknown, and what part the data has in it beside the prior.
+inline void set_curvature(Values<double> curvature, double lambda, TrajectoryReport& report) {
+    report.data_share = curvature.array() / (curvature.array() + std::max(lambda, 1e-300));
+    report.curvature = std::move(curvature);
+}
+
 } // namespace detail
 
 /// Trajectory matching by a damped Gauss-Newton method (Levenberg and Marquardt) with exact gradients, projected onto
@@ -240,8 +246,7 @@ template <int Dim>
     report.theta = point->theta();
     report.objective = point->value();
     report.misfit = point->misfit();
-    report.curvature = (diagonal.array() - lambda).cwiseMax(0.);
-    report.data_share = report.curvature.array() / (report.curvature.array() + std::max(lambda, 1e-300));
+    detail::set_curvature((diagonal.array() - lambda).cwiseMax(0.), lambda, report);
     report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return report;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <springfit/ipopt/detail/box_program.hpp>
+#include <springfit/ipopt/detail/scaled_quadratic.hpp>
 
 namespace springfit::ipopt::detail {
 
@@ -12,7 +12,7 @@ namespace springfit::ipopt::detail {
 /// for by conjugate gradients (the diagonal is 1), until the set stays. A point is kept only for a lower residual.
 class Polish {
 public:
-    explicit Polish(const ScaledProblem& problem) : m_problem(problem) {}
+    explicit Polish(const ScaledQuadratic& problem) : m_problem(problem) {}
 
     /// True where `x` was replaced by a point of lower residual, within the bounds.
     bool improve(Values<double>& x) {
@@ -87,7 +87,7 @@ private:
         }
     }
 
-    const ScaledProblem& m_problem;
+    const ScaledQuadratic& m_problem;
 };
 
 } // namespace springfit::ipopt::detail
