@@ -12,11 +12,11 @@ namespace springfit {
 
 /// What an engine of trajectory matching found.
 struct TrajectoryReport {
-    Status status = Status::failed; ///< `failed`: not even the prior could be simulated
+    Status status = Status::failed; ///< `failed`: neither the prior nor a stiffer one could be simulated
     Values<double> theta;           ///< [n_unknowns], within the bounds; the best point that was simulated and stable
-    double objective_start = 0;     ///< J at the prior
+    double objective_start = 0;     ///< J at the prior; infinite where the prior could not be simulated
     double objective = 0;           ///< J at theta
-    double misfit_start = 0;        ///< relative error of the training motions at the prior
+    double misfit_start = 0;        ///< relative error of the training motions at the prior, likewise
     double misfit = 0;              ///< at theta
     std::vector<double> history;    ///< J after each iteration
     int iterations = 0;
@@ -122,9 +122,11 @@ inline void set_curvature(Values<double> curvature, double lambda, TrajectoryRep
 /// Trajectory matching by a damped Gauss-Newton method (Levenberg and Marquardt) with exact gradients, projected onto
 /// the bounds.
 ///
-/// Each iteration: one simulation of all cases, one adjoint, one factorisation per set of clamps; a dense Hadamard matrix for small static problems
+/// Each iteration: one simulation of all cases, one adjoint, one factorisation per set of clamps; a dense Hadamard matrix
+/// for small static problems
 /// (n_unknowns^2 memory), else at most `max_cg_iterations` products of two solves per case. A trial point that is worse,
-/// singular, unstable or diverging is stepped back from by raising the damping, and is never returned. Deterministic.
+/// singular, unstable or diverging is stepped back from by raising the damping, and is never returned. Starts from the
+/// prior, or from 2, 4 or 8 times its stiffness where that is nearer. Deterministic.
 template <int Dim>
 [[nodiscard]] TrajectoryReport gauss_newton(const TrajectoryProblem<Dim>& problem,
                                             const GaussNewtonOptions& options = {}) {
@@ -144,17 +146,33 @@ template <int Dim>
 
     TrajectoryReport report;
     report.theta = Values<double>::Zero(n).cwiseMax(lower).cwiseMin(upper);
+    report.objective_start = report.misfit_start = std::numeric_limits<double>::infinity();
     report.curvature = Values<double>::Zero(n);
     report.data_share = Values<double>::Zero(n);
     auto point = std::make_unique<TrajectoryPoint<Dim>>(problem);
     auto trial = std::make_unique<TrajectoryPoint<Dim>>(problem);
-    Values<double> gradient;
-    ++report.evaluations;
-    if (!point->move_to(report.theta) || !point->gradient(gradient)) {
+    Values<double> gradient = Values<double>::Zero(n);
+    bool started = false;
+    for (double factor : {1., 2., 4., 8.}) { // a prior that is too soft folds under its loads, or cannot hold them
+        Values<double> start = problem.parameters().uniform_stiffness(factor).cwiseMax(lower).cwiseMin(upper);
+        Values<double> own_gradient;
+        ++report.evaluations;
+        const bool usable = trial->move_to(start) && trial->gradient(own_gradient);
+        if (usable && factor == 1.) {
+            report.objective_start = trial->value();
+            report.misfit_start = trial->misfit();
+        }
+        if (usable && (!started || trial->value() < point->value())) {
+            point.swap(trial);
+            gradient.swap(own_gradient);
+            started = true;
+        } else if (started) {
+            break;
+        }
+    }
+    if (!started) {
         return report;
     }
-    report.objective_start = report.objective = point->value();
-    report.misfit_start = report.misfit = point->misfit();
     report.status = Status::iteration_limit;
 
     double mu = 0;

@@ -180,6 +180,20 @@ public:
         return result;
     }
 
+    /// theta of the prior with all fitted stiffness, and fitted volume stiffness, times a factor > 0 [n_unknowns].
+    [[nodiscard]] Values<double> uniform_stiffness(double factor) const {
+        Values<double> theta = Values<double>::Zero(n_unknowns());
+        for (MotionParameter kind : {MotionParameter::stiffness, MotionParameter::volume}) {
+            const Values<double>& values = values_of(kind, m_prior);
+            for (Index item = 0; item < values.size(); ++item) {
+                if (const int u = unknown(kind, item); u >= 0) {
+                    theta(u) = theta_of(kind, values(item), factor * values(item));
+                }
+            }
+        }
+        return theta;
+    }
+
     /// d value / d theta of a spring or cell of the network of theta.
     [[nodiscard]] double slope(MotionParameter kind, const Network& network, Index item) const {
         switch (kind) {

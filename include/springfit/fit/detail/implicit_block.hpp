@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <springfit/fit/detail/spring_block.hpp>
+#include <springfit/fit/detail/rotated_factor.hpp>
 
 namespace springfit::detail {
 
@@ -10,7 +10,7 @@ namespace springfit::detail {
 ///     w M (y - target) - f_elastic(y) + d D(old) (y - old) = external ,
 ///
 /// w = d = 0 in statics; in a step of length s, w = 1 / s^2 and d = 1 / s. D has the springs' directions at `old`.
-/// `factor` is of the same matrix at the rest shape, and preconditions.
+/// `factor` is of the same matrix at the rest shape, and preconditions, turned with the body.
 template <int Dim>
 struct ImplicitSystem {
     const SpringNetwork<Dim, double>& network;
@@ -35,9 +35,9 @@ struct ImplicitSystem {
     }
 
     /// product = (w M + K(y) + d D(old)) direction, for a direction that leaves clamped nodes where they are.
-    void multiply(const Block& y, const Block& old, const Block& direction, Block& product) const {
+    void multiply(const Block& y, const Block& old, Curvature curvature, const Block& direction, Block& product) const {
         product.setZero(y.rows(), y.cols());
-        add_stiffness_product<Dim>(network, y, direction, product);
+        add_stiffness_product<Dim>(network, y, curvature, direction, product);
         add_inertia(direction, 1, product);
         if (is_damped()) {
             add_damping_product<Dim>(network, old, damping, direction, product);
@@ -88,8 +88,8 @@ inline Eigen::ArrayXd column_maxima(const Block& a) { return a.cwiseAbs().colwis
 
 /// Conjugate gradients on every column at once, until |residual| <= tolerance |right| in each. False where some column
 /// met negative curvature or did not converge; its solution is then the iterate before, a direction of descent.
-template <class Multiply>
-bool conjugate_gradients(const BlockCholesky& factor, const Multiply& multiply, const Block& right, double tolerance,
+template <class Factor, class Multiply>
+bool conjugate_gradients(const Factor& factor, const Multiply& multiply, const Block& right, double tolerance,
                          int max_iterations, Block& solution) {
     const Eigen::ArrayXd goal = tolerance * column_dots(right, right).sqrt();
     solution.setZero(right.rows(), right.cols());
@@ -137,7 +137,7 @@ bool conjugate_gradients(const BlockCholesky& factor, const Multiply& multiply, 
 template <int Dim>
 bool solve_implicit(const ImplicitSystem<Dim>& system, const Block& target, const Block& old, const Block& external,
                     Block& y) {
-    constexpr int max_iterations = 80;
+    constexpr int max_iterations = 200;
     constexpr double tolerance = 1e-10; // of the largest force that moves a node
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
     Block force;
@@ -146,7 +146,9 @@ bool solve_implicit(const ImplicitSystem<Dim>& system, const Block& target, cons
     double stiffest = system.inertia > 0 ? system.inertia * system.network.mass.maxCoeff() : 0.;
     stiffest += system.network.stiffness.maxCoeff() + system.damping * system.network.damping.maxCoeff();
     const double rounding = 64 * epsilon * stiffest * y.cwiseAbs().maxCoeff(); // some 16 springs at a node
-    const Eigen::ArrayXd goal = (tolerance * column_maxima(external).max(unbalanced)).max(rounding);
+    const Eigen::ArrayXd largest = column_maxima(external).max(unbalanced);
+    Eigen::ArrayXd goal = (tolerance * largest).max(rounding);
+    bool near = true;
     Eigen::ArrayXd energy = system.energy(y, target, old, external);
     Block direction;
     for (int iteration = 0; iteration < max_iterations; ++iteration) {
@@ -156,9 +158,19 @@ bool solve_implicit(const ImplicitSystem<Dim>& system, const Block& target, cons
         if ((unbalanced <= goal).all()) {
             return true;
         }
-        const bool definite = conjugate_gradients(
-            system.factor, [&](const Block& p, Block& q) { system.multiply(y, old, p, q); }, force, 1e-2, 100,
-            direction);
+        const RotatedFactor<Dim> factor(system.network, system.factor, y);
+        const auto newton_step = [&](Curvature curvature) {
+            return conjugate_gradients(
+                factor, [&](const Block& p, Block& q) { system.multiply(y, old, curvature, p, q); }, force, 1e-2,
+                100, direction);
+        };
+        // Far from balance, compressed springs make the exact curvature so indefinite that its truncated step is poor.
+        near = near || (unbalanced <= 1e-2 * largest).all();
+        const bool definite = near && newton_step(Curvature::exact);
+        if (!definite && (unbalanced > 1e-2 * largest).any()) {
+            near = false;
+            (void)newton_step(Curvature::positive_semidefinite);
+        }
         const Eigen::ArrayXd slope = column_dots(force, direction);
         const Eigen::ArrayXd norm = column_dots(force, force);
         Eigen::ArrayXd length = (unbalanced > goal).cast<double>();
@@ -181,8 +193,13 @@ bool solve_implicit(const ImplicitSystem<Dim>& system, const Block& target, cons
                 }
             }
         }
-        if (!accepted) { // rounding, or no descent
-            return (unbalanced <= 1e4 * goal).all();
+        if (!accepted) { // a column at rounding, or without descent: the others go on
+            const Eigen::ArrayXd stuck = (length > 0 && length < 1e-8).cast<double>();
+            if (((stuck > 0) && (unbalanced > 1e4 * goal)).any()) {
+                return false;
+            }
+            goal = (stuck > 0).select(unbalanced.max(goal), goal);
+            continue;
         }
         y.swap(trial);
         force.swap(trial_force);

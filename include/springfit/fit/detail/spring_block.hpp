@@ -4,6 +4,7 @@
 #include <array>
 
 #include <springfit/fit/trajectory_parameters.hpp>
+#include <springfit/network/forces.hpp>
 #include <springfit/solve/block_cholesky.hpp>
 
 /// The forces of a network and their derivatives for several motions of it at once: all blocks are over all nodes
@@ -186,17 +187,22 @@ void add_elastic_forces(const SpringNetwork<Dim, double>& network, const Block& 
     }
 }
 
-/// product += K(positions) direction, K the exact Hessian of the elastic energy.
+/// product += K(positions) direction, K the Hessian of the elastic energy, exact or made positive semidefinite as
+/// `add_stiffness` does.
 template <int Dim>
-void add_stiffness_product(const SpringNetwork<Dim, double>& network, const Block& positions, const Block& direction,
-                           Block& product) {
+void add_stiffness_product(const SpringNetwork<Dim, double>& network, const Block& positions, Curvature curvature,
+                           const Block& direction, Block& product) {
+    const bool exact = curvature == Curvature::exact;
     for (Index column = 0; column < positions.cols(); column += block_lanes) {
         for (Index e = 0; e < network.n_springs(); ++e) {
             const int i = network.springs(0, e);
             const int j = network.springs(1, e);
             const SpringLanes<Dim> spring(positions, i, j, column);
             const auto moved = difference<Dim>(direction, j, i, column);
-            const Lanes across = network.stiffness(e) * (1 - network.rest_length(e) * spring.inverse_length);
+            Lanes across = network.stiffness(e) * (1 - network.rest_length(e) * spring.inverse_length);
+            if (!exact) {
+                across = across.max(0.);
+            }
             const Lanes along = (network.stiffness(e) - across) * dot<Dim>(spring.n, moved);
             LaneVector<Dim> force;
             for (int d = 0; d < Dim; ++d) {
@@ -205,13 +211,18 @@ void add_stiffness_product(const SpringNetwork<Dim, double>& network, const Bloc
             add_pair<Dim>(product, j, i, column, force);
         }
         for (Index c = 0; c < network.n_cells(); ++c) {
+            if (!exact && !(network.volume_stiffness(c) > 0)) {
+                continue;
+            }
             const auto corners = network.cells.col(c);
             const CellLanes<Dim> cell(positions, corners, column);
             const auto moved = sides_of<Dim>(direction, corners, column);
             const double modulus = network.volume_stiffness(c) / network.rest_volume(c);
             add_cell<Dim>(product, corners, column, modulus * cell.volume_along(moved), cell.gradient);
-            add_cell<Dim>(product, corners, column, modulus * (cell.volume - network.rest_volume(c)),
-                          cell.gradient_along(moved));
+            if (exact) {
+                add_cell<Dim>(product, corners, column, modulus * (cell.volume - network.rest_volume(c)),
+                              cell.gradient_along(moved));
+            }
         }
     }
 }

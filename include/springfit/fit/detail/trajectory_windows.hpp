@@ -57,17 +57,21 @@ public:
                    group.step > 0 ? 1 / m_part : 0.},
           m_n_steps(windows.frames * rule.steps_per_frame), m_interval(checkpoint_interval) {}
 
-    /// Simulates; `misfit` is sum weight |x - x_ref|^2. `near` is where static equilibria are looked for, null: at the
-    /// reference. False where the network does not come to balance.
+    /// Simulates; `misfit` is sum weight |x - x_ref|^2. `near` is where static equilibria are looked for, null: at
+    /// rest; where none is found there, at the reference. False where the network does not come to balance.
     [[nodiscard]] bool simulate(WindowTape& tape, const WindowTape* near, double& misfit) const {
         tape = {};
         misfit = 0;
         if (m_windows.frames == 0) {
             const Block reference = gather(&Motion<Dim, double>::positions, 0, 0);
-            Block y = near != nullptr && !near->positions.empty() ? near->positions.front() : reference;
+            const Block external = gather(&Motion<Dim, double>::external_forces, 0, 0);
+            Block y = near != nullptr && !near->positions.empty() ? near->positions.front() : rest(reference);
             set_clamped(reference, y);
-            if (!solve_implicit<Dim>(m_system, reference, y, gather(&Motion<Dim, double>::external_forces, 0, 0), y)) {
-                return false;
+            if (!solve_implicit<Dim>(m_system, reference, y, external, y)) {
+                y = reference;
+                if (!solve_implicit<Dim>(m_system, reference, y, external, y)) {
+                    return false;
+                }
             }
             misfit = weighted_square(residual(y, 0));
             tape.positions.push_back(std::move(y));
@@ -185,6 +189,11 @@ private:
         return result;
     }
 
+    /// The rest shape in every column, as `like` is sized.
+    [[nodiscard]] Block rest(const Block& like) const {
+        return m_system.network.rest_positions.reshaped().replicate(1, like.cols());
+    }
+
     void set_clamped(const Block& from, Block& to) const {
         for (int node : m_system.clamped) {
             to.middleRows<Dim>(Dim * node) = from.middleRows<Dim>(Dim * node);
@@ -244,13 +253,13 @@ private:
 
     [[nodiscard]] bool solve_adjoint(const Block& y, const Block& old, const Block& right, Block& z) const {
         return conjugate_gradients(
-            m_system.factor, [&](const Block& p, Block& q) { m_system.multiply(y, old, p, q); }, right, 1e-10, 300, z);
+            RotatedFactor<Dim>(m_system.network, m_system.factor, y), [&](const Block& p, Block& q) { m_system.multiply(y, old, Curvature::exact, p, q); }, right, 1e-10, 300, z);
     }
 
     /// To a tenth of a per cent, as products with a Gauss-Newton matrix need.
     void solve_loosely(const Block& y, const Block& old, const Block& right, Block& z) const {
         (void)conjugate_gradients(
-            m_system.factor, [&](const Block& p, Block& q) { m_system.multiply(y, old, p, q); }, right, 1e-3, 30, z);
+            RotatedFactor<Dim>(m_system.network, m_system.factor, y), [&](const Block& p, Block& q) { m_system.multiply(y, old, Curvature::exact, p, q); }, right, 1e-3, 30, z);
     }
 
     /// The change of the positions at each frame along a change of the network's values.

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <springfit/fit/detail/spring_block.hpp>
+
+namespace springfit::detail {
+
+/// The factor of the matrix at the rest shape, turned with the body: R K0^-1 R', R the rotation of each node's
+/// surroundings in each column. What a body answers hardly depends on how it is turned, so this preconditions bent and
+/// twisted states almost as well as the rest shape.
+template <int Dim>
+class RotatedFactor {
+public:
+    /// The rotations at `positions`, none where no spring has turned by more than 0.03. O(springs x columns).
+    RotatedFactor(const SpringNetwork<Dim, double>& network, const BlockCholesky& factor, const Block& positions)
+        : m_factor(&factor) {
+        if (!is_turned(network, positions)) {
+            return;
+        }
+        // A = sum r r0' over the springs at a node; its polar part turns r0 into r as well as a rotation can.
+        m_rotations = Block::Zero(Dim * Dim * network.n_nodes(), positions.cols());
+        for (Index column = 0; column < positions.cols(); column += block_lanes) {
+            for (Index e = 0; e < network.n_springs(); ++e) {
+                const int i = network.springs(0, e);
+                const int j = network.springs(1, e);
+                const auto r = difference<Dim>(positions, j, i, column);
+                const Vector<Dim, double> r0 = network.rest_positions.col(j) - network.rest_positions.col(i);
+                const double weight = 1 / r0.squaredNorm();
+                for (int a = 0; a < Dim; ++a) {
+                    for (int b = 0; b < Dim; ++b) {
+                        const Lanes product = weight * r0(b) * r[a];
+                        entry(i, a, b, column) += product;
+                        entry(j, a, b, column) += product;
+                    }
+                }
+            }
+            for (Index node = 0; node < network.n_nodes(); ++node) {
+                make_rotation(node, column);
+            }
+        }
+    }
+
+    void solve(const Block& right, Block& solution) const {
+        if (m_rotations.size() == 0) {
+            m_factor->solve(right, solution);
+            return;
+        }
+        Block turned(right.rows(), right.cols());
+        apply(right, true, turned);
+        Block z;
+        m_factor->solve(turned, z);
+        solution.resize(right.rows(), right.cols());
+        apply(z, false, solution);
+    }
+
+private:
+    using Entries = std::array<std::array<Lanes, Dim>, Dim>;
+
+    Eigen::Map<Lanes> entry(Index node, int a, int b, Index column) {
+        return lanes(m_rotations, Dim * Dim * node + Dim * a + b, column);
+    }
+    [[nodiscard]] Eigen::Map<const Lanes> entry(Index node, int a, int b, Index column) const {
+        return lanes(m_rotations, Dim * Dim * node + Dim * a + b, column);
+    }
+
+    static bool is_turned(const SpringNetwork<Dim, double>& network, const Block& positions) {
+        for (Index e = 0; e < network.n_springs(); ++e) {
+            const int i = network.springs(0, e);
+            const int j = network.springs(1, e);
+            const Vector<Dim, double> n =
+                (network.rest_positions.col(j) - network.rest_positions.col(i)).normalized();
+            for (Index column = 0; column < positions.cols(); column += block_lanes) {
+                const SpringLanes<Dim> spring(positions, i, j, column);
+                Lanes along = n(0) * spring.n[0];
+                for (int d = 1; d < Dim; ++d) {
+                    along += n(d) * spring.n[d];
+                }
+                if ((along < 1 - 0.03 * 0.03 / 2).any()) {
+                    return true;
+                }
+            }
+        }
+        return false;
+    }
+
+    /// Replaces A of a node by its polar part, by the identity where that is no rotation.
+    void make_rotation(Index node, Index column) {
+        Entries x;
+        for (int a = 0; a < Dim; ++a) {
+            for (int b = 0; b < Dim; ++b) {
+                x[a][b] = entry(node, a, b, column);
+            }
+        }
+        Lanes good;
+        if constexpr (Dim == 2) {
+            const Lanes c = x[0][0] + x[1][1];
+            const Lanes s = x[1][0] - x[0][1];
+            const Lanes size = (c.square() + s.square()).sqrt();
+            good = (size > 0).template cast<double>();
+            x = {{{c / size, -s / size}, {s / size, c / size}}};
+        } else {
+            Lanes squares = Lanes::Zero();
+            for (int a = 0; a < 3; ++a) {
+                squares += dot<3>(x[a], x[a]);
+            }
+            const Lanes scale = (3 / squares).sqrt();
+            for (int a = 0; a < 3; ++a) {
+                x[a] = scaled<3>(scale, x[a]);
+            }
+            Lanes determinant = Lanes::Zero();
+            for (int iteration = 0; iteration < 12; ++iteration) { // Newton's for the polar part: X <- (X + X^-T) / 2
+                const std::array<LaneVector<3>, 3> cofactors{cross(x[1], x[2]), cross(x[2], x[0]), cross(x[0], x[1])};
+                determinant = dot<3>(x[0], cofactors[0]);
+                for (int a = 0; a < 3; ++a) {
+                    for (int b = 0; b < 3; ++b) {
+                        x[a][b] = (x[a][b] + cofactors[a][b] / determinant) / 2;
+                    }
+                }
+            }
+            good = ((determinant - 1).abs() < 1e-3).template cast<double>();
+        }
+        for (int a = 0; a < Dim; ++a) {
+            for (int b = 0; b < Dim; ++b) {
+                entry(node, a, b, column) = (good > 0).select(x[a][b], Lanes::Constant(a == b ? 1. : 0.));
+            }
+        }
+    }
+
+    void apply(const Block& in, bool transposed, Block& out) const {
+        for (Index node = 0; node < in.rows() / Dim; ++node) {
+            for (Index column = 0; column < in.cols(); column += block_lanes) {
+                for (int a = 0; a < Dim; ++a) {
+                    Lanes sum = Lanes::Zero();
+                    for (int b = 0; b < Dim; ++b) {
+                        sum += (transposed ? entry(node, b, a, column) : entry(node, a, b, column)) *
+                               lanes(in, Dim * node + b, column);
+                    }
+                    lanes(out, Dim * node + a, column) = sum;
+                }
+            }
+        }
+    }
+
+    const BlockCholesky* m_factor;
+    Block m_rotations; ///< [Dim * Dim * n_nodes x n_columns]; empty: none
+};
+
+} // namespace springfit::detail
