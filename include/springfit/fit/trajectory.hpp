@@ -126,7 +126,7 @@ inline void set_curvature(Values<double> curvature, double lambda, TrajectoryRep
 /// for small static problems
 /// (n_unknowns^2 memory), else at most `max_cg_iterations` products of two solves per case. A trial point that is worse,
 /// singular, unstable or diverging is stepped back from by raising the damping, and is never returned. Starts from the
-/// prior, or from 2, 4 or 8 times its stiffness where that is nearer. Deterministic.
+/// prior, or from 2, 4 or 8 times its stiffness where the prior fails or that halves J. Deterministic.
 template <int Dim>
 [[nodiscard]] TrajectoryReport gauss_newton(const TrajectoryProblem<Dim>& problem,
                                             const GaussNewtonOptions& options = {}) {
@@ -162,7 +162,7 @@ template <int Dim>
             report.objective_start = trial->value();
             report.misfit_start = trial->misfit();
         }
-        if (usable && (!started || trial->value() < point->value())) {
+        if (usable && (!started || trial->value() < point->value() / 2)) {
             point.swap(trial);
             gradient.swap(own_gradient);
             started = true;

@@ -58,17 +58,18 @@ public:
           m_n_steps(windows.frames * rule.steps_per_frame), m_interval(checkpoint_interval) {}
 
     /// Simulates; `misfit` is sum weight |x - x_ref|^2. `near` is where static equilibria are looked for, null: at
-    /// rest; where none is found there, at the reference. False where the network does not come to balance.
+    /// the reference; where none is found there, at rest. False where the network does not come to balance.
     [[nodiscard]] bool simulate(WindowTape& tape, const WindowTape* near, double& misfit) const {
         tape = {};
         misfit = 0;
         if (m_windows.frames == 0) {
             const Block reference = gather(&Motion<Dim, double>::positions, 0, 0);
             const Block external = gather(&Motion<Dim, double>::external_forces, 0, 0);
-            Block y = near != nullptr && !near->positions.empty() ? near->positions.front() : rest(reference);
+            Block y = near != nullptr && !near->positions.empty() ? near->positions.front() : reference;
             set_clamped(reference, y);
             if (!solve_implicit<Dim>(m_system, reference, y, external, y)) {
-                y = reference;
+                y = rest(reference);
+                set_clamped(reference, y);
                 if (!solve_implicit<Dim>(m_system, reference, y, external, y)) {
                     return false;
                 }
