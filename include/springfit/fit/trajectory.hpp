@@ -117,6 +117,38 @@ inline void set_curvature(Values<double> curvature, double lambda, TrajectoryRep
     report.curvature = std::move(curvature);
 }
 
+/// Moves `point` to the prior, or to 2, 4 or 8 times its stiffness where the prior fails or that halves J, within the
+/// bounds, and fills the start of a report. False where none of them can be simulated. `trial` is working memory.
+template <int Dim>
+[[nodiscard]] bool move_to_start(const TrajectoryProblem<Dim>& problem, const Values<double>& lower,
+                                 const Values<double>& upper, std::unique_ptr<TrajectoryPoint<Dim>>& point,
+                                 std::unique_ptr<TrajectoryPoint<Dim>>& trial, Values<double>& gradient,
+                                 TrajectoryReport& report) {
+    const Index n = problem.n_unknowns();
+    report.theta = Values<double>::Zero(n).cwiseMax(lower).cwiseMin(upper);
+    report.objective_start = report.misfit_start = std::numeric_limits<double>::infinity();
+    report.curvature = report.data_share = Values<double>::Zero(n);
+    bool started = false;
+    for (double factor : {1., 2., 4., 8.}) { // a prior that is too soft folds under its loads, or cannot hold them
+        const Values<double> theta = problem.parameters().uniform_stiffness(factor).cwiseMax(lower).cwiseMin(upper);
+        Values<double> own_gradient;
+        ++report.evaluations;
+        const bool is_stable = trial->move_to(theta) && trial->gradient(own_gradient);
+        if (is_stable && factor == 1.) {
+            report.objective_start = trial->value();
+            report.misfit_start = trial->misfit();
+        }
+        if (is_stable && (!started || trial->value() < point->value() / 2)) {
+            point.swap(trial);
+            gradient.swap(own_gradient);
+            started = true;
+        } else if (started) {
+            break;
+        }
+    }
+    return started;
+}
+
 } // namespace detail
 
 /// Trajectory matching by a damped Gauss-Newton method (Levenberg and Marquardt) with exact gradients, projected onto
@@ -145,32 +177,10 @@ template <int Dim>
     const Index n = problem.n_unknowns();
 
     TrajectoryReport report;
-    report.theta = Values<double>::Zero(n).cwiseMax(lower).cwiseMin(upper);
-    report.objective_start = report.misfit_start = std::numeric_limits<double>::infinity();
-    report.curvature = Values<double>::Zero(n);
-    report.data_share = Values<double>::Zero(n);
     auto point = std::make_unique<TrajectoryPoint<Dim>>(problem);
     auto trial = std::make_unique<TrajectoryPoint<Dim>>(problem);
     Values<double> gradient = Values<double>::Zero(n);
-    bool started = false;
-    for (double factor : {1., 2., 4., 8.}) { // a prior that is too soft folds under its loads, or cannot hold them
-        Values<double> start = problem.parameters().uniform_stiffness(factor).cwiseMax(lower).cwiseMin(upper);
-        Values<double> own_gradient;
-        ++report.evaluations;
-        const bool usable = trial->move_to(start) && trial->gradient(own_gradient);
-        if (usable && factor == 1.) {
-            report.objective_start = trial->value();
-            report.misfit_start = trial->misfit();
-        }
-        if (usable && (!started || trial->value() < point->value() / 2)) {
-            point.swap(trial);
-            gradient.swap(own_gradient);
-            started = true;
-        } else if (started) {
-            break;
-        }
-    }
-    if (!started) {
+    if (!detail::move_to_start(problem, lower, upper, point, trial, gradient, report)) {
         return report;
     }
     report.status = Status::iteration_limit;

@@ -11,7 +11,7 @@ namespace springfit::ipopt {
 
 struct TrajectoryFitOptions {
     /// Largest entry of the gradient up to which the status is `converged`, in (0, 1), of the scaled problem: 1 at the
-    /// prior.
+    /// start.
     double tolerance = 1e-4;
     int max_iterations = 300; ///< >= 0
     int memory = 30;          ///< pairs of gradients that the approximate Hessian is made of, >= 1
@@ -27,11 +27,11 @@ struct TrajectoryFitOptions {
 /// Trajectory matching by Ipopt's interior-point method [Waechter2006] with the exact adjoint gradient and a
 /// limited-memory Hessian: the problem of `gauss_newton`, for many unknowns and for bounds that bind.
 ///
-/// Starts at the prior. Unknowns are scaled to unit curvature there and the objective to a largest gradient of 1. A
+/// Starts where `gauss_newton` does. Unknowns are scaled to unit curvature there and the objective to a largest gradient of 1. A
 /// trial point that is singular, unstable or does not come to balance is backtracked from; static equilibria are looked
 /// for next to those of the best point so far. What is returned is the best stable point that was simulated, never
 /// worse than the prior, within the bounds to the last bit and on a bound where that is better; `status` is `failed`
-/// where not even the prior could be simulated. `history` is J of Ipopt's iterates, which need not fall each time. An
+/// where there is nothing to start from. `history` is J of Ipopt's iterates, which need not fall each time. An
 /// exception from the callback ends the solve and is thrown on.
 ///
 /// Throws InvalidArgument for an option out of range or one that Ipopt refuses. Cost per trial point: one simulation of

@@ -16,22 +16,20 @@ template <int Dim>
 class ScaledTrajectory : public BoxScaling {
 public:
     ScaledTrajectory(const TrajectoryProblem<Dim>& problem, double max_step, TrajectoryReport& report)
-        : m_all_lower(problem.parameters().lower()), m_all_upper(problem.parameters().upper()), m_max_step(max_step),
-          m_report(report), m_best(std::make_unique<TrajectoryPoint<Dim>>(problem)),
+        : m_problem(problem), m_all_lower(problem.parameters().lower()), m_all_upper(problem.parameters().upper()),
+          m_max_step(max_step), m_report(report), m_best(std::make_unique<TrajectoryPoint<Dim>>(problem)),
           m_trial(std::make_unique<TrajectoryPoint<Dim>>(problem)) {}
 
-    /// Moves to the prior and scales; false where it cannot be simulated.
+    /// Moves to the start and scales; false where there is none that can be simulated.
     [[nodiscard]] bool start(double lambda, int probes) {
-        const Values<double> prior =
-            Values<double>::Zero(m_all_lower.size()).cwiseMax(m_all_lower).cwiseMin(m_all_upper);
-        ++m_report.evaluations;
-        if (!m_best->move_to(prior) || !m_best->gradient(m_best_gradient)) {
+        if (!springfit::detail::move_to_start(m_problem, m_all_lower, m_all_upper, m_best, m_trial, m_best_gradient,
+                                              m_report)) {
             return false;
         }
-        m_theta = prior;
+        m_theta = m_best->theta();
         m_value = m_best->value();
         m_gradient = m_best_gradient;
-        for (Index u = 0; u < prior.size(); ++u) {
+        for (Index u = 0; u < m_theta.size(); ++u) {
             if (m_all_lower(u) < m_all_upper(u)) {
                 moving.push_back(static_cast<int>(u));
             }
@@ -88,6 +86,7 @@ private:
         }
     }
 
+    const TrajectoryProblem<Dim>& m_problem;
     const Values<double>& m_all_lower;
     const Values<double>& m_all_upper;
     double m_max_step;
@@ -116,24 +115,18 @@ TrajectoryReport trajectory(const TrajectoryProblem<Dim>& problem, const Traject
     const auto& lower = problem.parameters().lower();
     const auto& upper = problem.parameters().upper();
     const double lambda = problem.options().prior_weight;
-    const Index n = problem.n_unknowns();
 
     TrajectoryReport report;
-    report.theta = Values<double>::Zero(n).cwiseMax(lower).cwiseMin(upper);
-    report.curvature = Values<double>::Zero(n);
-    report.data_share = Values<double>::Zero(n);
     detail::ScaledTrajectory<Dim> scaled(problem, options.max_step, report);
     if (!scaled.start(lambda, options.probes)) {
         return report;
     }
-    report.objective_start = scaled.best().value();
-    report.misfit_start = scaled.best().misfit();
     report.status = Status::converged;
     if (scaled.size() > 0) {
         using Program = detail::BoxProgram<detail::ScaledTrajectory<Dim>>;
         const Ipopt::SmartPtr<Program> program =
-            new Program(scaled, report.theta(scaled.moving).cwiseQuotient(scaled.scale), options.progress, "trajectory",
-                        options.max_iterations);
+            new Program(scaled, scaled.best().theta()(scaled.moving).cwiseQuotient(scaled.scale), options.progress,
+                        "trajectory", options.max_iterations);
         report.status = detail::status_of(application->OptimizeTNLP(Ipopt::GetRawPtr(program)));
         if (program->stuck) {
             report.status = Status::stalled;
