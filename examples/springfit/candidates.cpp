@@ -39,6 +39,35 @@ double energy_in(const SpringNetwork<Dim, double>& network, const std::vector<Mo
 
 } // namespace
 
+namespace {
+
+/// The closed form's network that is nearest to the training equilibria, the first where there are none.
+template <int Dim>
+SpringNetwork<Dim, double> best_closed_form(const std::vector<Candidate<Dim>>& candidates,
+                                            const ReferenceCases<Dim>& cases, const Execution& execution) {
+    CaseSet<Dim> statics;
+    for (std::size_t c = 0; c < cases.training.motions.size(); ++c) {
+        if (cases.training.motions[c].n_frames() == 1) {
+            statics.scenarios.push_back(cases.training.scenarios[c]);
+            statics.motions.push_back(cases.training.motions[c]);
+        }
+    }
+    std::size_t best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t c = 0; c < candidates.size() && !statics.motions.empty(); ++c) {
+        const double error = motion_error(candidates[c].network, statics.scenarios, statics.motions, {},
+                                          MotionErrorOptions<double>{.step = {}, .execution = execution})
+                                 .error;
+        if (error < least) {
+            least = error;
+            best = c;
+        }
+    }
+    return candidates[best].network;
+}
+
+} // namespace
+
 template <int Dim>
 std::vector<Candidate<Dim>> make_candidates(const Discretisation<Dim>& body, const ReferenceCases<Dim>& cases,
                                             const FitOptions& options, const Execution& execution) {
@@ -53,7 +82,12 @@ std::vector<Candidate<Dim>> make_candidates(const Discretisation<Dim>& body, con
         set_damping<Dim>(candidate.network, cases.stiffness_damping, options);
         candidates.push_back(std::move(candidate));
     }
-    if (options.method != "closed-form") {
+    if ((options.method == "auto" || options.method == "trajectory") && !interrupted()) {
+        if (auto matched = match_motion<Dim>(best_closed_form<Dim>(candidates, cases, execution), cases, options, execution)) {
+            candidates.push_back(std::move(*matched));
+        }
+    }
+    if (options.method != "closed-form" && options.method != "trajectory" && !interrupted()) {
         // The closed form is the prior: what a spring gets that no motion excites.
         const SpringNetwork<Dim, double> prior = candidates.front().network;
         AccelerationOptions<double> how;
@@ -65,7 +99,9 @@ std::vector<Candidate<Dim>> make_candidates(const Discretisation<Dim>& body, con
             Stage stage("assemble objective");
             AccelerationObjective<Dim, double> objective(prior, how, execution);
             for (const auto& motion : cases.training.motions) {
-                objective.add(motion);
+                if (motion.n_frames() > 1) {
+                    objective.add(motion);
+                }
             }
             return objective.problem();
         }();

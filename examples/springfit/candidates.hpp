@@ -5,6 +5,7 @@
 
 #include <springfit/core/execution.hpp>
 #include <springfit/fit/problem.hpp>
+#include <springfit/fit/trajectory.hpp>
 
 #include "cases.hpp"
 
@@ -16,6 +17,8 @@ struct Candidate {
     std::string name;
     springfit::SpringNetwork<Dim, double> network;
     std::optional<springfit::FitReport> fit; ///< empty for a closed form
+    std::optional<springfit::TrajectoryReport> trajectory; ///< of matching motion alone
+    springfit::Values<double> data_share; ///< of each spring, of matching motion: above 1/2 the data sets its stiffness
     springfit::Index n_clamped = 0;          ///< springs of a closed form that would be negative and are 0
     std::string caveat;                      ///< for what a closed form is exact, where not for this body
     double seconds = 0;
@@ -40,5 +43,13 @@ void score(std::vector<Candidate<Dim>>& candidates, const ReferenceCases<Dim>& c
 
 /// The report's part on one candidate.
 [[nodiscard]] springfit::io::Json describe(const springfit::FitReport& fit);
+[[nodiscard]] springfit::io::Json describe(const springfit::TrajectoryReport& fit);
+
+/// Matches the network's own motion to that of the training cases: their equilibria where there are any, else windows
+/// of the recorded motions. Starts from `prior`. No value where not even that can be simulated.
+template <int Dim>
+[[nodiscard]] std::optional<Candidate<Dim>> match_motion(const springfit::SpringNetwork<Dim, double>& prior,
+                                                         const ReferenceCases<Dim>& cases, const FitOptions& options,
+                                                         const springfit::Execution& execution);
 
 } // namespace program

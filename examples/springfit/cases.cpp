@@ -68,6 +68,43 @@ std::vector<int> clamped_nodes(const std::vector<std::string>& clamps, const Poi
     return nodes;
 }
 
+namespace {
+
+/// Equilibria under several clamps, from which matching of motion learns, and others that judge it.
+template <int Dim>
+void add_statics(const FemReference<Dim>& reference, const Body<Dim, double>& body, const FitOptions& options,
+                 const Execution& execution, ReferenceCases<Dim>& result) {
+    const auto split = random_load_cases(body, {.training = options.static_cases.value_or(24),
+                                                .clamps = 3,
+                                                .held_out_loads = 6,
+                                                .held_out_kinds = 5,
+                                                .held_out_clamp = 0,
+                                                .seed = options.seed + 1000}); // other loads than those in time
+    std::vector<Scenario<Dim, double>> scenarios = split.training;
+    scenarios.insert(scenarios.end(), split.held_out_loads.begin(), split.held_out_loads.end());
+    scenarios.insert(scenarios.end(), split.held_out_kinds.begin(), split.held_out_kinds.end());
+    Stage stage("record statics");
+    auto recordings = reference.record_statics(scenarios, options.strain.value_or(0.1),
+                                               {.execution = execution, .progress = stage.callback()});
+    for (std::size_t c = 0; c < recordings.size(); ++c) {
+        auto& [motion, status] = recordings[c];
+        motion.name = "static " + scenarios[c].name;
+        result.interrupted = result.interrupted || status == Status::interrupted;
+        if (status != Status::converged) {
+            if (status != Status::interrupted) {
+                result.warnings.push_back(text("static load case ", scenarios[c].name,
+                                               ": the reference found no equilibrium; a smaller --strain may help"));
+            }
+            continue;
+        }
+        auto& set = c < split.training.size() ? result.training : result.held_out;
+        set.scenarios.push_back(scenarios[c]);
+        set.motions.push_back(std::move(motion));
+    }
+}
+
+} // namespace
+
 template <int Dim>
 ReferenceCases<Dim> record_cases(const FemReference<Dim>& reference, const Discretisation<Dim>& body,
                                  const FitOptions& options, const Execution& execution) {
@@ -151,6 +188,9 @@ ReferenceCases<Dim> record_cases(const FemReference<Dim>& reference, const Discr
             set.scenarios.push_back(all[c]);
             set.motions.push_back(std::move(motion));
         }
+    }
+    if (options.method == "auto" || options.method == "trajectory") {
+        add_statics<Dim>(reference, loaded, options, execution, result);
     }
     if (result.held_out.motions.empty() || result.training.motions.empty()) {
         if (result.interrupted) {

@@ -22,6 +22,7 @@ Discretisation<Dim> discretise(const AnyMesh& any, const FitOptions& options) {
                 Discretisation<Dim> body;
                 body.network = springs_along_edges(mesh, {.diagonals = !SimplexCell<Cell>,
                                                           .second_ring = options.second_ring,
+                                                          .volume = options.volume,
                                                           .density = options.density,
                                                           .thickness = thickness});
                 body.closed_forms = closed_forms(mesh, body.network.springs,

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <springfit/fem/dynamics.hpp>
+#include <springfit/fem/statics.hpp>
 #include <springfit/mesh/structured.hpp>
+#include <springfit/motion/strain.hpp>
 #include <springfit/motion/transfer.hpp>
 #include <springfit/solve/symmetric_solver.hpp>
 
@@ -60,6 +62,39 @@ public:
             recording.motion = springfit::transfer(recording.motion, at_corners, at_nodes, m_corner_mesh.nodes);
         }
         return recording;
+    }
+
+    [[nodiscard]] std::vector<springfit::Recording<Dim, double>>
+    record_statics(std::vector<Scenario>& scenarios, double strain,
+                   const springfit::StaticRecordOptions<double>& how) const override {
+        const springfit::fem::Model model(m_mesh, m_material, m_density, m_options);
+        const auto at_all_nodes = [&](const std::vector<Scenario>& cases) {
+            std::vector<Scenario> result;
+            for (const Scenario& scenario : cases) {
+                result.push_back(with_edge_nodes(scenario));
+            }
+            return result;
+        };
+        const auto respond = [&](const std::vector<Scenario>& cases) {
+            auto quiet = how;
+            quiet.progress = {};
+            auto responses = springfit::linear_responses(model, at_all_nodes(cases), quiet);
+            for (auto& response : responses) { // vertices come first
+                response = response.leftCols(std::min(response.cols(), m_corner_mesh.n_nodes())).eval();
+            }
+            return responses;
+        };
+        (void)springfit::scale_to_strain(scenarios, springfit::edges(m_corner_mesh), m_corner_mesh.nodes, strain, respond);
+        auto recordings = springfit::record_statics(model, at_all_nodes(scenarios), how);
+        if constexpr (has_edge_nodes) {
+            const auto [at_corners, at_nodes] = springfit::corner_interpolations(m_mesh);
+            for (auto& recording : recordings) {
+                if (recording.motion.n_frames() > 0) {
+                    recording.motion = springfit::transfer(recording.motion, at_corners, at_nodes, m_corner_mesh.nodes);
+                }
+            }
+        }
+        return recordings;
     }
 
     [[nodiscard]] std::string element() const override { return m_element; }

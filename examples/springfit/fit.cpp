@@ -49,6 +49,13 @@ void check(const FitOptions& options) {
         require(*options.damping_ratio >= 0 && *options.damping_ratio < 1, "--damping-ratio",
                 "a part of critical in [0, 1)", *options.damping_ratio);
     }
+    if (options.static_cases) {
+        require(*options.static_cases >= 1, "--static-cases", "at least one", *options.static_cases);
+    }
+    if (options.strain) {
+        require(*options.strain > 0 && *options.strain < 1, "--strain", "a strain in (0, 1)", *options.strain);
+    }
+    require(options.fit_seconds > 0, "--fit-seconds", "a positive time, s", options.fit_seconds);
     if (options.frames) {
         require(*options.frames >= 4, "--frames", "at least 4", *options.frames);
     }
@@ -69,6 +76,8 @@ void check(const FitOptions& options) {
         refuse(options.held_out_cases.has_value(), "--held-out-cases");
         refuse(options.frames.has_value(), "--frames");
         refuse(options.deformation.has_value(), "--deformation");
+        refuse(options.static_cases.has_value(), "--static-cases");
+        refuse(options.strain.has_value(), "--strain");
     }
     if (is_motion_file(options.input)) {
         require(!options.nodes, "--nodes", "a surface or an outline as INPUT", options.input);
@@ -178,6 +187,9 @@ int fit_body(const AnyMesh& mesh, std::vector<Motion<Dim, double>> recorded, std
 
     io::Model<Dim, double> model;
     model.network = chosen.network;
+    if (chosen.trajectory) {
+        model.data_share = chosen.data_share;
+    }
     model.fixed = cases.held_out.motions.front().clamped;
     model.stable_time_step = stable_step(chosen.network, model.fixed);
     model.provenance = {{"springfit", SPRINGFIT_VERSION_STRING}, {"method", chosen.name}, {"input", options.input},
@@ -185,7 +197,9 @@ int fit_body(const AnyMesh& mesh, std::vector<Motion<Dim, double>> recorded, std
 
     io::Report report;
     const bool early = cut_short || fit_interrupted;
-    report.status = early ? Status::interrupted : chosen.fit ? chosen.fit->status : Status::converged;
+    report.status = early ? Status::interrupted : chosen.fit        ? chosen.fit->status
+                    : chosen.trajectory ? chosen.trajectory->status
+                                        : Status::converged;
     report.method = chosen.name;
     report.nodes = body.network.n_nodes();
     report.springs = body.network.n_springs();
@@ -195,7 +209,9 @@ int fit_body(const AnyMesh& mesh, std::vector<Motion<Dim, double>> recorded, std
     for (const auto& candidate : candidates) {
         report.held_out.baselines.emplace_back(candidate.name, candidate.held_out);
         report.training.baselines.emplace_back(candidate.name, candidate.training);
-        fits[candidate.name] = candidate.fit ? describe(*candidate.fit) : io::Json::object();
+        fits[candidate.name] = candidate.fit          ? describe(*candidate.fit)
+                               : candidate.trajectory ? describe(*candidate.trajectory)
+                                                      : io::Json::object();
         fits[candidate.name]["relative_stiffness"] = candidate.relative_stiffness;
         fits[candidate.name]["seconds"] = candidate.seconds;
         if (!candidate.caveat.empty()) {

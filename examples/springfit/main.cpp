@@ -63,6 +63,10 @@ void declare_fit(CLI::App& app, program::FitOptions& options) {
         ->group(cases);
     add_optional(app, "--training-cases", options.training_cases, "load cases the fit sees (default 6)")->group(cases);
     add_optional(app, "--held-out-cases", options.held_out_cases, "load cases it never sees (default 3)")->group(cases);
+    add_optional(app, "--static-cases", options.static_cases,
+                 "equilibria, under three clamps, that matching of motion learns from (default 24)")
+        ->group(cases);
+    add_optional(app, "--strain", options.strain, "strain that their loads aim at (default 0.1)")->group(cases);
     add_optional(app, "--frames", options.frames, "frames of each recorded motion (default 32)")->group(cases);
     add_optional(app, "--deformation", options.deformation,
                  "displacement the loads aim at, as a part of the body's size (default 0.05)")
@@ -71,7 +75,7 @@ void declare_fit(CLI::App& app, program::FitOptions& options) {
 
     const std::string fit = "Springs";
     app.add_option("--method", options.method, "auto scores all methods on held-out motion and returns the best")
-        ->check(CLI::IsMember({"auto", "dominant-term", "exact", "closed-form"}))
+        ->check(CLI::IsMember({"auto", "trajectory", "dominant-term", "exact", "closed-form"}))
         ->capture_default_str()
         ->group(fit);
     app.add_option("--damping", options.damping,
@@ -82,6 +86,9 @@ void declare_fit(CLI::App& app, program::FitOptions& options) {
     add_optional(app, "--zeta", options.zeta, "zeta of --damping ratio (default 0.05)")->group(fit);
     app.add_flag("--second-ring", options.second_ring, "springs between opposite vertices of neighbouring cells, too")
         ->group(fit);
+    app.add_flag("--volume", options.volume, "cells that hold their volume, too; for nearly incompressible materials")
+        ->group(fit);
+    app.add_option("--fit-seconds", options.fit_seconds, "time for matching motion, s")->capture_default_str()->group(fit);
     app.add_option("--threads", options.threads, "threads, 0 for all")->capture_default_str()->group(fit);
 }
 

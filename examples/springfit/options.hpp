@@ -31,9 +31,13 @@ struct FitOptions {
     std::string damping = "proportional";
     std::optional<double> zeta; ///< of `--damping ratio`
     bool second_ring = false;
+    bool volume = false; ///< cells that hold their volume, too
+    double fit_seconds = 300; ///< for matching motion
 
     std::optional<int> training_cases;
     std::optional<int> held_out_cases;
+    std::optional<int> static_cases; ///< equilibria that matching of motion learns from
+    std::optional<double> strain;    ///< of those
     std::optional<int> frames;
     std::optional<double> deformation; ///< largest displacement wanted, as a part of the body's size
     unsigned seed = 1;

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include <springfit/motion/record.hpp>
+#include <springfit/motion/record_static.hpp>
 
 #include "body.hpp"
 
@@ -30,6 +30,12 @@ public:
     /// Records the motion under a scenario with material damping D = beta K, s.
     [[nodiscard]] virtual springfit::Recording<Dim, double>
     record(const Scenario& scenario, double beta, const springfit::RecordOptions<double>& options) const = 0;
+
+    /// Scales the loads to the wanted strain of the edges and records the equilibrium under each; a case that finds none
+    /// comes back without frames.
+    [[nodiscard]] virtual std::vector<springfit::Recording<Dim, double>>
+    record_statics(std::vector<Scenario>& scenarios, double strain,
+                   const springfit::StaticRecordOptions<double>& options) const = 0;
 
     [[nodiscard]] virtual std::string element() const = 0;
 };

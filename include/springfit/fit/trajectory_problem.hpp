@@ -126,7 +126,7 @@ private:
     Values<double> m_theta;
     SpringNetwork<Dim, double> m_network;
     std::vector<std::unique_ptr<BlockCholesky>> m_factors;
-    std::vector<detail::WindowTape> m_tapes;
+    std::vector<detail::WindowTape<Dim>> m_tapes;
     double m_value = std::numeric_limits<double>::infinity();
     double m_misfit = std::numeric_limits<double>::infinity();
 };

@@ -227,7 +227,7 @@ bool TrajectoryPoint<Dim>::move_to(const Values<double>& theta, const Trajectory
     std::vector<double> misfits(blocks, infinity);
     execution.for_chunks(static_cast<Index>(blocks), 1, [&](Index, Index b, Index) {
         const auto at = static_cast<std::size_t>(b);
-        const detail::WindowTape* guess = near != nullptr && near->m_tapes.size() == blocks ? &near->m_tapes[at] : nullptr;
+        const detail::WindowTape<Dim>* guess = near != nullptr && near->m_tapes.size() == blocks ? &near->m_tapes[at] : nullptr;
         if (!simulation(at).simulate(m_tapes[at], guess, misfits[at])) {
             misfits[at] = infinity;
         }

@@ -37,7 +37,9 @@ struct StepRule {
 };
 
 /// What a simulated block keeps: its states at checkpoints, and all steps of one segment between them.
+template <int Dim>
 struct WindowTape {
+    std::vector<RotatedFactor<Dim>> turned;   ///< of a static case: the factor turned to the equilibrium
     std::vector<Block> positions, velocities; ///< at the start of each segment; of a static case, the equilibrium
     Index segment = -1;                       ///< whose steps are kept
     std::vector<Block> x, v, y;               ///< of each step of that segment
@@ -59,7 +61,7 @@ public:
 
     /// Simulates; `misfit` is sum weight |x - x_ref|^2. `near` is where static equilibria are looked for, null: at
     /// the reference; where none is found there, at rest. False where the network does not come to balance.
-    [[nodiscard]] bool simulate(WindowTape& tape, const WindowTape* near, double& misfit) const {
+    [[nodiscard]] bool simulate(WindowTape<Dim>& tape, const WindowTape<Dim>* near, double& misfit) const {
         tape = {};
         misfit = 0;
         if (m_windows.frames == 0) {
@@ -75,6 +77,7 @@ public:
                 }
             }
             misfit = weighted_square(residual(y, 0));
+            tape.turned.emplace_back(m_system.network, m_system.factor, y);
             tape.positions.push_back(std::move(y));
             return true;
         }
@@ -99,11 +102,11 @@ public:
     }
 
     /// derivative += 1/2 d misfit / d network's values, by the adjoint. False where a state is not stable.
-    [[nodiscard]] bool add_gradient(WindowTape& tape, NetworkValues& derivative) const {
+    [[nodiscard]] bool add_gradient(WindowTape<Dim>& tape, NetworkValues& derivative) const {
         if (m_windows.frames == 0) {
             const Block& y = tape.positions.front();
             Block z;
-            if (!solve_adjoint(y, y, weighted(residual(y, 0)), z)) {
+            if (!solve(tape.turned.front(), y, y, weighted(residual(y, 0)), exactly, z)) {
                 return false;
             }
             add_parameter_derivative<Dim>(m_system.network, y, z, derivative);
@@ -111,14 +114,16 @@ public:
         }
         return backwards(
             tape, [&](const Block& state, Index frame) { return weighted(residual(state, frame)); },
-            [&](const Block& y, const Block& x, const Block& right, Block& z) { return solve_adjoint(y, x, right, z); },
+            [&](const Block& y, const Block& x, const Block& right, Block& z) {
+                return solve(RotatedFactor<Dim>(m_system.network, m_system.factor, y), y, x, right, exactly, z);
+            },
             true, derivative);
     }
 
     /// derivative += J' W J change, J the derivative of the positions but for that of the springs' directions in damping.
-    void add_product(WindowTape& tape, const NetworkValues& change, NetworkValues& derivative) const {
-        const auto solve = [&](const Block& y, const Block& x, const Block& right, Block& z) {
-            solve_loosely(y, x, right, z);
+    void add_product(WindowTape<Dim>& tape, const NetworkValues& change, NetworkValues& derivative) const {
+        const auto solve_step = [&](const Block& y, const Block& x, const Block& right, Block& z) {
+            (void)solve(RotatedFactor<Dim>(m_system.network, m_system.factor, y), y, x, right, loosely, z);
             return true;
         };
         if (m_windows.frames == 0) {
@@ -127,21 +132,21 @@ public:
             add_parameter_forces<Dim>(m_system.network, change, y, force);
             m_system.hold(force);
             Block u;
-            solve_loosely(y, y, force, u);
-            solve_loosely(y, y, weighted(u), force);
+            (void)solve(tape.turned.front(), y, y, force, loosely, u);
+            (void)solve(tape.turned.front(), y, y, weighted(u), loosely, force);
             add_parameter_derivative<Dim>(m_system.network, y, force, derivative);
             return;
         }
         const std::vector<Block> moved = forwards(tape, change);
         (void)backwards(
             tape,
-            [&](const Block&, Index frame) { return weighted(moved[static_cast<std::size_t>(frame - 1)]); }, solve,
+            [&](const Block&, Index frame) { return weighted(moved[static_cast<std::size_t>(frame - 1)]); }, solve_step,
             false, derivative);
     }
 
     /// derivative += J' W^(1/2) z for numbers z, one for each coordinate of each frame, from `draw()`.
     template <class Draw>
-    void add_probe(WindowTape& tape, Draw&& draw, NetworkValues& derivative) const {
+    void add_probe(WindowTape<Dim>& tape, Draw&& draw, NetworkValues& derivative) const {
         const auto random = [&](const Block& state) {
             Block z(state.rows(), state.cols());
             for (Index column = 0; column < z.cols(); ++column) {
@@ -221,7 +226,7 @@ private:
     }
 
     /// Makes the tape hold the steps of a segment, from its checkpoint.
-    [[nodiscard]] bool run_segment(WindowTape& tape, Index segment) const {
+    [[nodiscard]] bool run_segment(WindowTape<Dim>& tape, Index segment) const {
         if (tape.segment == segment) {
             return true;
         }
@@ -252,19 +257,23 @@ private:
         return true;
     }
 
-    [[nodiscard]] bool solve_adjoint(const Block& y, const Block& old, const Block& right, Block& z) const {
-        return conjugate_gradients(
-            RotatedFactor<Dim>(m_system.network, m_system.factor, y), [&](const Block& p, Block& q) { m_system.multiply(y, old, Curvature::exact, p, q); }, right, 1e-10, 300, z);
-    }
+    /// How near a linear solve must come.
+    struct Precision {
+        double tolerance;
+        int max_iterations;
+    };
+    static constexpr Precision exactly{1e-10, 300}; ///< for gradients
+    static constexpr Precision loosely{1e-2, 20};   ///< for products with a Gauss-Newton matrix
 
-    /// To a tenth of a per cent, as products with a Gauss-Newton matrix need.
-    void solve_loosely(const Block& y, const Block& old, const Block& right, Block& z) const {
-        (void)conjugate_gradients(
-            RotatedFactor<Dim>(m_system.network, m_system.factor, y), [&](const Block& p, Block& q) { m_system.multiply(y, old, Curvature::exact, p, q); }, right, 1e-3, 30, z);
+    [[nodiscard]] bool solve(const RotatedFactor<Dim>& factor, const Block& y, const Block& old, const Block& right,
+                             const Precision& precision, Block& z) const {
+        return conjugate_gradients(
+            factor, [&](const Block& p, Block& q) { m_system.multiply(y, old, Curvature::exact, p, q); }, right,
+            precision.tolerance, precision.max_iterations, z);
     }
 
     /// The change of the positions at each frame along a change of the network's values.
-    [[nodiscard]] std::vector<Block> forwards(WindowTape& tape, const NetworkValues& change) const {
+    [[nodiscard]] std::vector<Block> forwards(WindowTape<Dim>& tape, const NetworkValues& change) const {
         std::vector<Block> frames;
         Block dx = Block::Zero(tape.positions.front().rows(), tape.positions.front().cols());
         Block dv = dx;
@@ -282,7 +291,7 @@ private:
                     add_damping_parameter_forces<Dim>(m_system.network, change, x, m_system.damping * (y - x), force);
                 }
                 m_system.hold(force);
-                solve_loosely(y, x, force, dy);
+                (void)solve(RotatedFactor<Dim>(m_system.network, m_system.factor, y), y, x, force, loosely, dy);
                 finish_step(dy, dx, dv);
                 if (const Index step = segment * m_interval + s + 1; step % m_rule.steps_per_frame == 0) {
                     frames.push_back(dx);
@@ -295,7 +304,7 @@ private:
     /// The discrete adjoint: `source(x, frame)` is what pulls at the positions of a frame, `solve(y, x, right, z)`
     /// solves with the matrix of a step.
     template <class Source, class Solve>
-    [[nodiscard]] bool backwards(WindowTape& tape, const Source& source, const Solve& solve, bool with_directions,
+    [[nodiscard]] bool backwards(WindowTape<Dim>& tape, const Source& source, const Solve& solve, bool with_directions,
                                  NetworkValues& derivative) const {
         const double alpha = m_rule.alpha;
         const double step_length = m_part / alpha;

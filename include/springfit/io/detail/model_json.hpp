@@ -185,6 +185,11 @@ std::string model_text(const Model<Dim, Scalar>& model) {
     json["springs"]["stiffness"] = detail::values_to_json(network.stiffness);
     json["springs"]["rest_length"] = detail::values_to_json(network.rest_length);
     json["springs"]["damping"] = detail::values_to_json(network.damping);
+    if (model.data_share.size() > 0) {
+        require(model.data_share.size() == network.n_springs() && model.data_share.minCoeff() >= 0, "data_share",
+                text(network.n_springs(), " parts in [0, 1], one per spring"), model.data_share.size());
+        json["springs"]["data_share"] = detail::values_to_json(model.data_share);
+    }
     if (network.n_cells() > 0) {
         json["cells"]["nodes"] = detail::columns_to_json(network.cells);
         json["cells"]["rest_volume"] = detail::values_to_json(network.rest_volume);
@@ -213,6 +218,10 @@ Model<Dim, Scalar> model_from_json(const Json& json, const std::string& file) {
     Model<Dim, Scalar> model;
     const JsonPlace nodes = root.member("nodes");
     model.network = detail::read_network<Dim, Scalar>(nodes, root.member("springs"));
+    if (root.member("springs").value().contains("data_share")) {
+        model.data_share = detail::read_values<Scalar>(root.member("springs").member("data_share"),
+                                                       model.network.n_springs(), "spring", detail::Range::not_negative);
+    }
     if (json.contains("cells")) {
         detail::read_cells<Dim, Scalar>(root.member("cells"), model.network);
     }
