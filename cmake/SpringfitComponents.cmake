@@ -1,7 +1,7 @@
 # The components of springfit, the rooms of include/springfit that each holds, and what each links.
 # Read by the build and by the installed package, so that both look for dependencies in the same way.
 
-set(SPRINGFIT_COMPONENTS core parallel ipopt io cgal)
+set(SPRINGFIT_COMPONENTS core parallel ipopt io cgal search)
 
 set(SPRINGFIT_core_ROOMS core mesh solve fem motion network step fit closed_form score)
 set(SPRINGFIT_core_LINKS Eigen3::Eigen)
@@ -13,6 +13,8 @@ set(SPRINGFIT_io_ROOMS io)
 set(SPRINGFIT_io_LINKS springfit::core nlohmann_json::nlohmann_json PkgConfig::SPRINGFIT_HDF5)
 set(SPRINGFIT_cgal_ROOMS cgal)
 set(SPRINGFIT_cgal_LINKS springfit::core CGAL::CGAL)
+set(SPRINGFIT_search_ROOMS search)
+set(SPRINGFIT_search_LINKS springfit::core Pagmo::pagmo)
 
 # springfit_find_component(<name>): sets springfit_<name>_FOUND, and springfit_<name>_REASON where it is FALSE.
 macro(springfit_find_component component)
@@ -30,6 +32,8 @@ macro(springfit_find_component component)
   elseif("${component}" STREQUAL "io")
     springfit_require(io nlohmann_json 3.10)
     springfit_require_pkg_config(io HDF5 hdf5)
+  elseif("${component}" STREQUAL "search")
+    springfit_require(search pagmo)
   else()
     set(springfit_${component}_FOUND FALSE)
     set(springfit_${component}_REASON "springfit has no component of this name")

@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 
 build_packages="g++ cmake ninja-build pkg-config libeigen3-dev libtbb-dev libcgal-dev coinor-libipopt-dev
                 nlohmann-json3-dev libhdf5-dev libcli11-dev"
-test_packages="doctest-dev python3 python3-h5py"
+test_packages="doctest-dev libpagmo-dev python3 python3-h5py"
 
 install_missing() {
     missing=""

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <springfit/fit/trajectory.hpp>
+
+namespace springfit::search {
+
+/// What a search found, and when. `fit.history` is the best J so far after each iteration; `fit.rejected` counts points
+/// that could not be simulated or were unstable.
+struct SearchReport {
+    TrajectoryReport fit;
+    std::vector<double> seconds; ///< since the start, of each entry of `fit.history`
+};
+
+} // namespace springfit::search
