@@ -11,7 +11,7 @@
 #include <springfit/fit/trajectory_problem.hpp>
 
 /// Searches that only look at values, through pagmo2: what was done before gradients of motion were at hand, kept as
-/// baselines for `gauss_newton` and `ipopt::trajectory`, which need hundreds of times fewer simulations.
+/// baselines for `gauss_newton` and `ipopt::trajectory`, which need tens to hundreds of times fewer simulations.
 namespace springfit::search {
 
 /// Where a search looks: lower <= theta <= upper, besides the bounds of the problem itself.
