@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
 
-#include <springfit/closed_form/isotropic_solid.hpp>
+#include <springfit/closed_form/cauchy_split.hpp>
 #include <springfit/io/motion_file.hpp>
 #include <springfit/mesh/mesh.hpp>
 #include <springfit/network/spring_network.hpp>
@@ -37,6 +38,8 @@ template <int Dim>
 struct Discretisation {
     springfit::SpringNetwork<Dim, double> network; ///< springs, rest lengths and masses; stiffness 0 as yet
     std::vector<springfit::NamedClosedForm<double>> closed_forms; ///< all that hold for these cells, at least one
+    /// Springs together with cells that hold their volume, of `--volume` on simplices.
+    std::optional<springfit::CauchySplit<double>> cauchy_split;
     springfit::io::MotionTopology topology;        ///< cells and springs, for the motion files
     std::string cell_name;
     std::vector<int> surface; ///< nodes on the boundary

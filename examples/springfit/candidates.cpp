@@ -82,6 +82,15 @@ std::vector<Candidate<Dim>> make_candidates(const Discretisation<Dim>& body, con
         set_damping<Dim>(candidate.network, cases.stiffness_damping, options);
         candidates.push_back(std::move(candidate));
     }
+    if (body.cauchy_split) {
+        Candidate<Dim> candidate;
+        candidate.name = "cauchy_split";
+        candidate.network = body.network;
+        apply(*body.cauchy_split, candidate.network);
+        candidate.caveat = body.cauchy_split->springs.caveat;
+        set_damping<Dim>(candidate.network, cases.stiffness_damping, options);
+        candidates.push_back(std::move(candidate));
+    }
     if ((options.method == "auto" || options.method == "trajectory") && !interrupted()) {
         if (auto matched = match_motion<Dim>(best_closed_form<Dim>(candidates, cases, execution), cases, options, execution)) {
             candidates.push_back(std::move(*matched));
@@ -146,17 +155,26 @@ std::vector<Candidate<Dim>> make_candidates(const Discretisation<Dim>& body, con
 
 template <int Dim>
 void score(std::vector<Candidate<Dim>>& candidates, const ReferenceCases<Dim>& cases, const Execution& execution) {
-    const MotionErrorOptions<double> how{.step = {}, .execution = execution};
+    // A network that needs more iterations to come to rest is of no use.
+    const MotionErrorOptions<double> how{.step = {}, .max_iterations = 100, .execution = execution};
     Stage stage("score on motion");
     const std::size_t parts = 2 * candidates.size();
     std::size_t part = 0;
+    const auto error_of = [&](const SpringNetwork<Dim, double>& network, const CaseSet<Dim>& set) {
+        const double error =
+            motion_error(network, set.scenarios, set.motions, stage.callback(part++, parts), how).error;
+        return interrupted() ? std::numeric_limits<double>::infinity() : error;
+    };
     for (auto& candidate : candidates) {
-        candidate.held_out = motion_error(candidate.network, cases.held_out.scenarios, cases.held_out.motions,
-                                          stage.callback(part++, parts), how)
-                                 .error;
-        candidate.training = motion_error(candidate.network, cases.training.scenarios, cases.training.motions,
-                                          stage.callback(part++, parts), how)
-                                 .error;
+        candidate.held_out = error_of(candidate.network, cases.held_out);
+        if (std::isfinite(candidate.held_out)) {
+            candidate.training = error_of(candidate.network, cases.training);
+        } else {
+            (void)stage.callback(part++, parts)({"score", 1});
+        }
+        if (interrupted()) {
+            return;
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include <springfit/core/execution.hpp>
@@ -22,8 +23,8 @@ struct Candidate {
     springfit::Index n_clamped = 0;          ///< springs of a closed form that would be negative and are 0
     std::string caveat;                      ///< for what a closed form is exact, where not for this body
     double seconds = 0;
-    double held_out = 0;
-    double training = 0;
+    double held_out = std::numeric_limits<double>::infinity(); ///< until it is scored in full
+    double training = std::numeric_limits<double>::infinity();
     /// Elastic energy in the reference's training motion beside that of the first closed form: below 1 the springs resist
     /// that motion less.
     double relative_stiffness = 1;
@@ -36,7 +37,8 @@ template <int Dim>
                                                           const ReferenceCases<Dim>& cases, const FitOptions& options,
                                                           const springfit::Execution& execution);
 
-/// Fills in the errors of every candidate on both sets of load cases.
+/// Fills in the errors of every candidate on both sets of load cases; a Ctrl-C leaves those not reached infinite. A
+/// candidate that fails on held-out motion is not tried on the training's.
 template <int Dim>
 void score(std::vector<Candidate<Dim>>& candidates, const ReferenceCases<Dim>& cases,
            const springfit::Execution& execution);

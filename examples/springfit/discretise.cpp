@@ -27,6 +27,13 @@ Discretisation<Dim> discretise(const AnyMesh& any, const FitOptions& options) {
                                                           .thickness = thickness});
                 body.closed_forms = closed_forms(mesh, body.network.springs,
                                                  {.young = options.young, .poisson = options.poisson, .thickness = thickness});
+                if constexpr (SimplexCell<Cell> && Cell::dimension == Dim) {
+                    if (options.volume) {
+                        body.cauchy_split = cauchy_split(
+                            mesh, body.network.springs,
+                            {.young = options.young, .poisson = options.poisson, .thickness = thickness});
+                    }
+                }
                 body.topology = io::motion_topology(mesh, body.network.springs);
                 body.cell_name = Cell::name;
                 if constexpr (solid) {

@@ -153,6 +153,7 @@ int fit_body(const AnyMesh& mesh, std::vector<Motion<Dim, double>> recorded, std
     since(fitting, "fit");
     const Timer scoring;
     score<Dim>(candidates, cases, execution);
+    const bool score_interrupted = interrupted();
     since(scoring, "score");
 
     const bool choose = options.method == "auto" || options.method == "closed-form";
@@ -196,7 +197,7 @@ int fit_body(const AnyMesh& mesh, std::vector<Motion<Dim, double>> recorded, std
                         {"material", material_of<Dim>(options)},  {"seed", options.seed},  {"reference", cases.description}};
 
     io::Report report;
-    const bool early = cut_short || fit_interrupted;
+    const bool early = cut_short || fit_interrupted || score_interrupted;
     report.status = early ? Status::interrupted : chosen.fit        ? chosen.fit->status
                     : chosen.trajectory ? chosen.trajectory->status
                                         : Status::converged;

@@ -165,8 +165,8 @@ TEST_CASE_TEMPLATE("the adjoint gradient is that of finite differences", T, Dime
     auto options = everything();
     SUBCASE("statics at large strain") {
         options.parameters.damping.fit = false;
-        check_gradient(TrajectoryProblem<Dim>(prior, std::vector{fixture.static_case(0.1, 1), fixture.static_case(0.2, 2)},
-                                              options),
+        check_gradient(TrajectoryProblem<Dim>(
+                           prior, std::vector{fixture.static_case(0.1, 1), fixture.static_case(0.2, 2)}, options),
                        1);
     }
     SUBCASE("midpoint steps, several windows, few checkpoints") {
@@ -271,8 +271,8 @@ TEST_CASE_TEMPLATE("what springs did is found again from their motion", T, Dimen
                 CHECK(network.stiffness(e) == prior.stiffness(e));
                 CHECK(report.data_share(e) == 0);
             } else {
-                CHECK(test::relative(network.stiffness(e), fixture.network.stiffness(e),
-                                     fixture.network.stiffness(e)) < 1e-3);
+                CHECK(test::relative(network.stiffness(e), fixture.network.stiffness(e), fixture.network.stiffness(e)) <
+                      1e-3);
             }
         }
     }

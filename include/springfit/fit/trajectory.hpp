@@ -42,13 +42,13 @@ enum class GaussNewtonForm {
 
 struct GaussNewtonOptions {
     int max_iterations = 40;
-    double tolerance = 1e-3;       ///< stop when an iteration lowers J by less than this part, twice running; > 0
+    double tolerance = 1e-3; ///< stop when an iteration lowers J by less than this part, twice running; > 0
     GaussNewtonForm form = GaussNewtonForm::automatic;
-    int max_cg_iterations = 40;    ///< of each matrix-free step
-    double cg_tolerance = 0.05;    ///< relative residual of each matrix-free step, in (0, 1)
-    double max_step = 1.5;         ///< largest change of an entry of theta in one iteration, > 0
-    int probes = 16;               ///< random vectors for the diagonal in matrix-free form, >= 1
-    ProgressCallback progress{};   ///< may end the search with the best so far
+    int max_cg_iterations = 40;  ///< of each matrix-free step
+    double cg_tolerance = 0.05;  ///< relative residual of each matrix-free step, in (0, 1)
+    double max_step = 1.5;       ///< largest change of an entry of theta in one iteration, > 0
+    int probes = 16;             ///< random vectors for the diagonal in matrix-free form, >= 1
+    ProgressCallback progress{}; ///< may end the search with the best so far
 };
 
 namespace detail {
@@ -64,7 +64,8 @@ inline std::vector<bool> at_active_bound(const Values<double>& theta, const Valu
     return active;
 }
 
-/// Minimises 1/2 s'(H + mu I)s + gradient's over the unknowns that are not active, by preconditioned conjugate gradients.
+/// Minimises 1/2 s'(H + mu I)s + gradient's over the unknowns that are not active, by preconditioned conjugate
+/// gradients.
 template <class Product>
 Values<double> reduced_newton_step(const Product& product, const Values<double>& diagonal, double mu,
                                    const Values<double>& gradient, const std::vector<bool>& active, double tolerance,
@@ -154,11 +155,11 @@ template <int Dim>
 /// Trajectory matching by a damped Gauss-Newton method (Levenberg and Marquardt) with exact gradients, projected onto
 /// the bounds.
 ///
-/// Each iteration: one simulation of all cases, one adjoint, one factorisation per set of clamps; a dense Hadamard matrix
-/// for small static problems
-/// (n_unknowns^2 memory), else at most `max_cg_iterations` products of two solves per case. A trial point that is worse,
-/// singular, unstable or diverging is stepped back from by raising the damping, and is never returned. Starts from the
-/// prior, or from 2, 4 or 8 times its stiffness where the prior fails or that halves J. Deterministic.
+/// Each iteration: one simulation of all cases, one adjoint, one factorisation per set of clamps; a dense Hadamard
+/// matrix for small static problems (n_unknowns^2 memory), else at most `max_cg_iterations` products of two solves per
+/// case. A trial point that is worse, singular, unstable or diverging is stepped back from by raising the damping, and
+/// is never returned. Starts from the prior, or from 2, 4 or 8 times its stiffness where the prior fails or that halves
+/// J. Deterministic.
 template <int Dim>
 [[nodiscard]] TrajectoryReport gauss_newton(const TrajectoryProblem<Dim>& problem,
                                             const GaussNewtonOptions& options = {}) {

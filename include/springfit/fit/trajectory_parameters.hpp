@@ -32,8 +32,8 @@ struct MotionParameterOptions {
     bool fit = false;
     double lower = -std::numeric_limits<double>::infinity(); ///< bound of the value itself, in its unit
     double upper = std::numeric_limits<double>::infinity();  ///< >= lower
-    /// Group of each spring or cell: those of one group share one theta, so one factor on what they start from (one value,
-    /// where they start from the same); empty: no ties.
+    /// Group of each spring or cell: those of one group share one theta, so one factor on what they start from (one
+    /// value, where they start from the same); empty: no ties.
     std::vector<int> ties{};
 };
 
@@ -258,11 +258,10 @@ private:
         std::sort(groups.begin(), groups.end());
         groups.erase(std::unique(groups.begin(), groups.end()), groups.end());
         for (Index item = 0; item < n; ++item) {
-            const auto group = options.ties.empty()
-                                   ? item
-                                   : std::lower_bound(groups.begin(), groups.end(),
-                                                      options.ties[static_cast<std::size_t>(item)]) -
-                                         groups.begin();
+            const auto group = options.ties.empty() ? item
+                                                    : std::lower_bound(groups.begin(), groups.end(),
+                                                                       options.ties[static_cast<std::size_t>(item)]) -
+                                                          groups.begin();
             numbers.push_back(static_cast<int>(m_n_unknowns + group));
         }
         m_n_unknowns += options.ties.empty() ? n : static_cast<Index>(groups.size());

@@ -3,9 +3,9 @@
 
 #include <springfit/core/execution.hpp>
 #include <springfit/core/status.hpp>
+#include <springfit/fit/detail/trajectory_windows.hpp>
 #include <springfit/fit/trajectory_parameters.hpp>
 #include <springfit/motion/motion.hpp>
-#include <springfit/fit/detail/trajectory_windows.hpp>
 
 namespace springfit {
 
@@ -21,13 +21,13 @@ struct TrajectoryOptions {
     double prior_weight = 1e-4; ///< lambda >= 0: weight of |theta|^2 beside cases of unit size
     /// Frames that a window predicts, from the recorded state of its first frame; 0: each motion to its end.
     int horizon = 0;
-    int window_stride = 0;      ///< frames from one window's start to the next's; 0: the horizon
-    int steps_per_frame = 1;    ///< steps of the integrator between two frames, >= 1
+    int window_stride = 0;   ///< frames from one window's start to the next's; 0: the horizon
+    int steps_per_frame = 1; ///< steps of the integrator between two frames, >= 1
     PredictionRule rule = PredictionRule::midpoint;
-    /// Steps between kept states; those between are simulated again when they are needed. 0: all are kept where they take
-    /// less than 512 MiB, else about the root of their number.
+    /// Steps between kept states; those between are simulated again when they are needed. 0: all are kept where they
+    /// take less than 512 MiB, else about the root of their number.
     int checkpoint_interval = 0;
-    Execution execution{};       ///< blocks of windows are independent of each other
+    Execution execution{}; ///< blocks of windows are independent of each other
 };
 
 template <int Dim>
@@ -37,22 +37,23 @@ class TrajectoryPoint;
 ///
 ///     J = 1/2 sum_cases 1/s sum_frames |x(t; theta) - x_ref(t)|^2  +  lambda/2 |theta|^2 ,   lower <= theta <= upper,
 ///
-/// sums over the nodes that are not clamped. A motion of one frame is a static case: x is the network's equilibrium. Any other
-/// is cut into windows: from the recorded positions and velocities of its first frame the network is stepped on its own,
-/// under the recorded forces and clamps, over the horizon. s makes cases of one size: for a static case sum |x_ref - x_rest|^2, for
-/// the windows of a motion the lesser of that and of the distance from the straight motion x_0 + t v_0 that no force would
-/// give. With a horizon of one short step J is therefore the acceleration objective, to the first order of the step.
+/// sums over the nodes that are not clamped. A motion of one frame is a static case: x is the network's equilibrium.
+/// Any other is cut into windows: from the recorded positions and velocities of its first frame the network is stepped
+/// on its own, under the recorded forces and clamps, over the horizon. s makes cases of one size: for a static case sum
+/// |x_ref - x_rest|^2, for the windows of a motion the lesser of that and of the distance from the straight motion x_0
+/// + t v_0 that no force would give. With a horizon of one short step J is therefore the acceleration objective, to the
+/// first order of the step.
 ///
-/// Large strains are treated as they are. Memory: linear in springs + windows x nodes, besides one sparse factor per set
-/// of clamps.
+/// Large strains are treated as they are. Memory: linear in springs + windows x nodes, besides one sparse factor per
+/// set of clamps.
 template <int Dim>
 class TrajectoryProblem {
 public:
     static constexpr int dimension = Dim;
 
-    /// The network's own values are the prior: give it the stiffness of a closed form. Throws InvalidArgument for a motion
-    /// that does not fit the network, frames that are not evenly spaced, a case without any free node that moves, or an
-    /// option out of range.
+    /// The network's own values are the prior: give it the stiffness of a closed form. Throws InvalidArgument for a
+    /// motion that does not fit the network, frames that are not evenly spaced, a case without any free node that
+    /// moves, or an option out of range.
     template <std::floating_point Scalar>
     TrajectoryProblem(const SpringNetwork<Dim, Scalar>& network, const std::vector<Motion<Dim, Scalar>>& motions,
                       const TrajectoryOptions& options = {});

@@ -7,13 +7,13 @@
 
 namespace springfit {
 
-/// Several vectors over the coordinates of all nodes, side by side `[Dim * n_nodes x n_columns]`, one row contiguous, so
-/// that what is done to all columns alike runs as vector instructions. The number of columns is a multiple of
+/// Several vectors over the coordinates of all nodes, side by side `[Dim * n_nodes x n_columns]`, one row contiguous,
+/// so that what is done to all columns alike runs as vector instructions. The number of columns is a multiple of
 /// `block_lanes`.
 using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-inline constexpr int block_lanes = 4;     ///< columns that are handled at once
-inline constexpr int block_columns = 16;  ///< most columns of a block
+inline constexpr int block_lanes = 4;    ///< columns that are handled at once
+inline constexpr int block_columns = 16; ///< most columns of a block
 
 /// The lanes of one row of a block.
 using Lanes = Eigen::Array<double, block_lanes, 1>;
@@ -23,9 +23,9 @@ using Lanes = Eigen::Array<double, block_lanes, 1>;
 /// it. Memory: 12 bytes per entry of L.
 class BlockCholesky {
 public:
-    /// Factorises `lower`, the lower triangle over the coordinates of `free`, for blocks whose nodes have `Dim` rows each.
-    /// The analysis is reused while the pattern stays the same. False where the matrix is not positive definite by a
-    /// margin above rounding (a pivot below 1e-12 of its diagonal entry).
+    /// Factorises `lower`, the lower triangle over the coordinates of `free`, for blocks whose nodes have `Dim` rows
+    /// each. The analysis is reused while the pattern stays the same. False where the matrix is not positive definite
+    /// by a margin above rounding (a pivot below 1e-12 of its diagonal entry).
     template <int Dim>
     [[nodiscard]] bool factorise(const SparseMatrix<double>& lower, const FreeNodes& free) {
         if (m_rows.size() != static_cast<std::size_t>(lower.cols()) || lower.nonZeros() != m_pattern_size) {

@@ -46,8 +46,7 @@ struct ImplicitSystem {
     }
 
     /// What is out of balance: external + f_elastic(y) - w M (y - target) - d D(old) (y - old).
-    void unbalanced(const Block& y, const Block& target, const Block& old, const Block& external,
-                    Block& force) const {
+    void unbalanced(const Block& y, const Block& target, const Block& old, const Block& external, Block& force) const {
         force = external;
         add_elastic_forces<Dim>(network, y, force);
         if (inertia > 0) {
@@ -84,7 +83,9 @@ inline Eigen::ArrayXd column_dots(const Block& a, const Block& b) {
     return a.cwiseProduct(b).colwise().sum().transpose().array();
 }
 
-inline Eigen::ArrayXd column_maxima(const Block& a) { return a.cwiseAbs().colwise().maxCoeff().transpose().array(); }
+inline Eigen::ArrayXd column_maxima(const Block& a) {
+    return a.cwiseAbs().colwise().maxCoeff().transpose().array();
+}
 
 /// Conjugate gradients on every column at once, until |residual| <= tolerance |right| in each. False where some column
 /// met negative curvature or did not converge; its solution is then the iterate before, a direction of descent.
@@ -161,8 +162,8 @@ bool solve_implicit(const ImplicitSystem<Dim>& system, const Block& target, cons
         const RotatedFactor<Dim> factor(system.network, system.factor, y);
         const auto newton_step = [&](Curvature curvature) {
             return conjugate_gradients(
-                factor, [&](const Block& p, Block& q) { system.multiply(y, old, curvature, p, q); }, force, 1e-2,
-                100, direction);
+                factor, [&](const Block& p, Block& q) { system.multiply(y, old, curvature, p, q); }, force, 1e-2, 100,
+                direction);
         };
         // Far from balance, compressed springs make the exact curvature so indefinite that its truncated step is poor.
         near = near || (unbalanced <= 1e-2 * largest).all();

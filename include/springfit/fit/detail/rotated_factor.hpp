@@ -67,8 +67,7 @@ private:
         for (Index e = 0; e < network.n_springs(); ++e) {
             const int i = network.springs(0, e);
             const int j = network.springs(1, e);
-            const Vector<Dim, double> n =
-                (network.rest_positions.col(j) - network.rest_positions.col(i)).normalized();
+            const Vector<Dim, double> n = (network.rest_positions.col(j) - network.rest_positions.col(i)).normalized();
             for (Index column = 0; column < positions.cols(); column += block_lanes) {
                 const SpringLanes<Dim> spring(positions, i, j, column);
                 Lanes along = n(0) * spring.n[0];

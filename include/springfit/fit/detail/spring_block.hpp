@@ -101,8 +101,7 @@ struct CellLanes {
     }
 
     /// How the gradient changes when the sides change by `moved`.
-    [[nodiscard]] std::array<LaneVector<Dim>, Dim>
-    gradient_along(const std::array<LaneVector<Dim>, Dim>& moved) const {
+    [[nodiscard]] std::array<LaneVector<Dim>, Dim> gradient_along(const std::array<LaneVector<Dim>, Dim>& moved) const {
         std::array<LaneVector<Dim>, Dim> result;
         if constexpr (Dim == 2) {
             result[0] = {moved[1][1] / 2, -moved[1][0] / 2};
@@ -160,8 +159,8 @@ Eigen::ArrayXd elastic_energy(const SpringNetwork<Dim, double>& network, const B
         }
         for (Index c = 0; c < network.n_cells(); ++c) {
             const CellLanes<Dim> cell(positions, network.cells.col(c), column);
-            twice += network.volume_stiffness(c) / network.rest_volume(c) *
-                     (cell.volume - network.rest_volume(c)).square();
+            twice +=
+                network.volume_stiffness(c) / network.rest_volume(c) * (cell.volume - network.rest_volume(c)).square();
         }
         energy.segment<block_lanes>(column) = twice / 2;
     }
@@ -258,8 +257,8 @@ void add_damping_derivative(const SpringNetwork<Dim, double>& network, const Blo
             const Lanes scale = factor * network.damping(e) * spring.inverse_length;
             LaneVector<Dim> change; // of the spring's vector r
             for (int d = 0; d < Dim; ++d) {
-                change[d] = scale * (tested[d] * rate_along + rate[d] * test_along -
-                                     2 * rate_along * test_along * spring.n[d]);
+                change[d] =
+                    scale * (tested[d] * rate_along + rate[d] * test_along - 2 * rate_along * test_along * spring.n[d]);
             }
             add_pair<Dim>(derivative, j, i, column, change);
         }

@@ -11,10 +11,14 @@ namespace detail {
 
 template <int Dim, std::floating_point Scalar>
 SpringNetwork<Dim, double> in_double(const SpringNetwork<Dim, Scalar>& network) {
-    return {network.rest_positions.template cast<double>(), network.springs,
-            network.stiffness.template cast<double>(),      network.rest_length.template cast<double>(),
-            network.damping.template cast<double>(),        network.mass.template cast<double>(),
-            network.cells,                                  network.rest_volume.template cast<double>(),
+    return {network.rest_positions.template cast<double>(),
+            network.springs,
+            network.stiffness.template cast<double>(),
+            network.rest_length.template cast<double>(),
+            network.damping.template cast<double>(),
+            network.mass.template cast<double>(),
+            network.cells,
+            network.rest_volume.template cast<double>(),
             network.volume_stiffness.template cast<double>()};
 }
 
@@ -115,8 +119,9 @@ void TrajectoryProblem<Dim>::add_windows(std::size_t number, std::vector<detail:
         step = (motion.times.back() - motion.times.front()) / static_cast<double>(last * m_options.steps_per_frame);
         for (std::size_t t = 1; t < motion.times.size(); ++t) {
             const double frame = motion.times[t] - motion.times[t - 1];
-            require(std::abs(frame - step * m_options.steps_per_frame) < 1e-6 * frame, text("motion '", motion.name, "'"),
-                    "evenly spaced frames", text("a gap of ", frame, " s before frame ", t));
+            require(std::abs(frame - step * m_options.steps_per_frame) < 1e-6 * frame,
+                    text("motion '", motion.name, "'"), "evenly spaced frames",
+                    text("a gap of ", frame, " s before frame ", t));
         }
     }
     const std::size_t group = group_of(motion.clamped, step);
@@ -152,8 +157,9 @@ Index TrajectoryProblem<Dim>::checkpoint_interval(const detail::WindowBlock& blo
     }
     double bytes = 0;
     for (const auto& each : m_blocks) {
-        bytes += 3. * 8. * Dim * static_cast<double>(m_parameters.prior().n_nodes() * each.weight.size() * each.frames *
-                                                     m_options.steps_per_frame);
+        bytes += 3. * 8. * Dim *
+                 static_cast<double>(m_parameters.prior().n_nodes() * each.weight.size() * each.frames *
+                                     m_options.steps_per_frame);
     }
     return bytes < 512. * 1024 * 1024 ? steps
                                       : std::max<Index>(8, static_cast<Index>(std::sqrt(static_cast<double>(steps))));
@@ -227,7 +233,8 @@ bool TrajectoryPoint<Dim>::move_to(const Values<double>& theta, const Trajectory
     std::vector<double> misfits(blocks, infinity);
     execution.for_chunks(static_cast<Index>(blocks), 1, [&](Index, Index b, Index) {
         const auto at = static_cast<std::size_t>(b);
-        const detail::WindowTape<Dim>* guess = near != nullptr && near->m_tapes.size() == blocks ? &near->m_tapes[at] : nullptr;
+        const detail::WindowTape<Dim>* guess =
+            near != nullptr && near->m_tapes.size() == blocks ? &near->m_tapes[at] : nullptr;
         if (!simulation(at).simulate(m_tapes[at], guess, misfits[at])) {
             misfits[at] = infinity;
         }
@@ -249,11 +256,10 @@ template <class Body>
 NetworkValues TrajectoryPoint<Dim>::sum_over_blocks(const Body& body) {
     const auto zero = NetworkValues::zero(m_network.n_springs(), m_network.n_cells());
     std::vector<NetworkValues> parts(m_tapes.size(), zero);
-    m_problem->m_options.execution.for_chunks(
-        static_cast<Index>(m_tapes.size()), 1, [&](Index, Index b, Index) {
-            const auto at = static_cast<std::size_t>(b);
-            body(at, simulation(at), m_tapes[at], parts[at]);
-        });
+    m_problem->m_options.execution.for_chunks(static_cast<Index>(m_tapes.size()), 1, [&](Index, Index b, Index) {
+        const auto at = static_cast<std::size_t>(b);
+        body(at, simulation(at), m_tapes[at], parts[at]);
+    });
     NetworkValues sum = zero;
     for (const auto& part : parts) {
         sum += part;
@@ -288,7 +294,8 @@ Values<double> TrajectoryPoint<Dim>::curvature(int probes) {
         const NetworkValues sum =
             sum_over_blocks([&](std::size_t block, const auto& windows, auto& tape, NetworkValues& part) {
                 std::mt19937 random(static_cast<unsigned>(1000003 * probe + static_cast<int>(block)));
-                windows.add_probe(tape, [&random] { return (random() & 1U) != 0 ? 1. : -1.; }, part);
+                windows.add_probe(
+                    tape, [&random] { return (random() & 1U) != 0 ? 1. : -1.; }, part);
             });
         diagonal += m_problem->m_parameters.pull_back(m_network, sum).cwiseAbs2();
     }

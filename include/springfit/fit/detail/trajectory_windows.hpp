@@ -28,9 +28,9 @@ struct WindowGroup {
     CliqueMatrix<Dim, double> pattern;
 };
 
-/// How a step of h goes from (x, v): y is where an implicit Euler step of alpha h leads, and the step is carried on from
-/// there in a straight line, x+ = x + (y - x) / alpha, v+ = v + ((y - x) / (alpha h) - v) / alpha: implicit Euler at
-/// alpha = 1, the implicit midpoint rule at 1/2.
+/// How a step of h goes from (x, v): y is where an implicit Euler step of alpha h leads, and the step is carried on
+/// from there in a straight line, x+ = x + (y - x) / alpha, v+ = v + ((y - x) / (alpha h) - v) / alpha: implicit Euler
+/// at alpha = 1, the implicit midpoint rule at 1/2.
 struct StepRule {
     double alpha = 0.5;
     int steps_per_frame = 1;
@@ -54,9 +54,10 @@ public:
     WindowSimulation(const WindowBlock& windows, const WindowGroup<Dim>& group, const Motions& motions,
                      const StepRule& rule, Index checkpoint_interval, const SpringNetwork<Dim, double>& network,
                      const BlockCholesky& factor)
-        : m_windows(windows), m_motions(motions), m_rule(rule), m_part(rule.alpha * group.step),
-          m_system{network, group.clamped, factor, group.step > 0 ? 1 / (m_part * m_part) : 0.,
-                   group.step > 0 ? 1 / m_part : 0.},
+        : m_windows(windows), m_motions(motions), m_rule(rule),
+          m_part(rule.alpha * group.step), m_system{network, group.clamped, factor,
+                                                    group.step > 0 ? 1 / (m_part * m_part) : 0.,
+                                                    group.step > 0 ? 1 / m_part : 0.},
           m_n_steps(windows.frames * rule.steps_per_frame), m_interval(checkpoint_interval) {}
 
     /// Simulates; `misfit` is sum weight |x - x_ref|^2. `near` is where static equilibria are looked for, null: at
@@ -120,7 +121,8 @@ public:
             true, derivative);
     }
 
-    /// derivative += J' W J change, J the derivative of the positions but for that of the springs' directions in damping.
+    /// derivative += J' W J change, J the derivative of the positions but for that of the springs' directions in
+    /// damping.
     void add_product(WindowTape<Dim>& tape, const NetworkValues& change, NetworkValues& derivative) const {
         const auto solve_step = [&](const Block& y, const Block& x, const Block& right, Block& z) {
             (void)solve(RotatedFactor<Dim>(m_system.network, m_system.factor, y), y, x, right, loosely, z);
@@ -139,9 +141,8 @@ public:
         }
         const std::vector<Block> moved = forwards(tape, change);
         (void)backwards(
-            tape,
-            [&](const Block&, Index frame) { return weighted(moved[static_cast<std::size_t>(frame - 1)]); }, solve_step,
-            false, derivative);
+            tape, [&](const Block&, Index frame) { return weighted(moved[static_cast<std::size_t>(frame - 1)]); },
+            solve_step, false, derivative);
     }
 
     /// derivative += J' W^(1/2) z for numbers z, one for each coordinate of each frame, from `draw()`.
@@ -168,7 +169,8 @@ public:
             add_parameter_derivative<Dim>(m_system.network, y, z, derivative);
             return;
         }
-        (void)backwards(tape, [&](const Block& state, Index) { return random(state); }, solve, false, derivative);
+        (void)backwards(
+            tape, [&](const Block& state, Index) { return random(state); }, solve, false, derivative);
     }
 
 private:
@@ -180,7 +182,7 @@ private:
     }
 
     /// A recorded quantity of each window, `fraction` of the way from one of its frames to the next.
-    [[nodiscard]] Block gather(Frames Motion<Dim, double>::* quantity, Index frame, double fraction) const {
+    [[nodiscard]] Block gather(Frames Motion<Dim, double>::*quantity, Index frame, double fraction) const {
         const auto columns = static_cast<Index>(m_windows.motions.size());
         Block result(Dim * m_system.network.n_nodes(), columns);
         for (Index c = 0; c < columns; ++c) {
