@@ -153,7 +153,8 @@ TEST_CASE_TEMPLATE("the equilibrium is that of the St Venant-Kirchhoff finite el
     Vector<dim, double> pull = Vector<dim, double>::Constant(3);
     scenario.gravity = {{pull, {}}};
     const auto found = equilibrium(network, scenario);
-    const auto fem = fem::equilibrium(model, scenario, 0., {.tolerance = 1e-11});
+    // A flat membrane does not resist the first push across it, so the finite elements start where the springs end.
+    const auto fem = fem::equilibrium(model, scenario, 0., {.tolerance = 1e-11}, found.positions);
     REQUIRE(fem.status == Status::converged);
     CHECK(found.status == Status::converged);
     CHECK(found.stable);

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+
+#include <springfit/core/execution.hpp>
+#include <springfit/fit/problem.hpp>
+#include <springfit/fit/trajectory_problem.hpp>
+#include <springfit/mesh/mesh.hpp>
+#include <springfit/motion/transfer.hpp>
+
+#include "report.hpp"
+
+/// The accuracy study: every method on every mesh, material, resolution and setup, scored on motion it has not seen.
+namespace study {
+
+using springfit::Index;
+
+struct Settings {
+    bool quick = false;
+    std::filesystem::path data; ///< folder of surfaces; empty: parts that need them are skipped
+    unsigned seed = 1;
+    springfit::Execution execution{};
+};
+
+/// True once the user asked to stop.
+[[nodiscard]] bool interrupted();
+
+/// The parts; each returns early where `interrupted()`.
+void study_plane(Report& report, const Settings& settings);
+void study_solids(Report& report, const Settings& settings);
+
+// What needs CGAL, each in the one translation unit that includes it; without CGAL, boxes and rectangles are cut from
+// jittered grids, and there is nothing else.
+
+[[nodiscard]] bool has_cgal();
+[[nodiscard]] springfit::Mesh<2, double, springfit::Tri3> rectangle_mesh(double length, double height, Index n_nodes);
+[[nodiscard]] springfit::Mesh<3, double, springfit::Tet4> box_mesh(const std::array<double, 3>& size, Index n_nodes);
+/// The inside of a surface; nothing, with the reason on standard output, where there is no such file or no solid.
+[[nodiscard]] std::optional<springfit::Mesh<3, double, springfit::Tet4>> solid_mesh(const std::filesystem::path& path,
+                                                                                  Index n_nodes);
+/// Interpolation from the nodes of a mesh at points; nothing without CGAL.
+[[nodiscard]] std::optional<springfit::Interpolation<double>>
+interpolation_at(const springfit::Mesh<3, double, springfit::Tet4>& mesh, const springfit::Points<3, double>& points);
+
+/// Jittered hexahedra cut into tetrahedra at random, which favours no direction.
+[[nodiscard]] springfit::Mesh<3, double, springfit::Tet4> random_cut_box(const std::array<int, 3>& cells,
+                                                                       const std::array<double, 3>& size, unsigned seed);
+
+/// The exact minimiser of the acceleration fit by Ipopt; nothing where it is not built in.
+[[nodiscard]] std::optional<springfit::FitReport> exact_fit(const springfit::FitProblem& problem);
+
+/// A search without gradients: the best values found within a time.
+struct SearchResult {
+    std::string method;
+    double seconds = 0;
+    springfit::Values<double> theta;
+};
+/// Genetic algorithm and simulated annealing, each within the seconds; empty where they are not built in.
+[[nodiscard]] std::vector<SearchResult> searches(const springfit::TrajectoryProblem<3>& problem, double seconds,
+                                                 unsigned seed);
+
+} // namespace study
