@@ -177,7 +177,8 @@ private:
 } // namespace detail
 
 /// Different ways to clamp a body: its own clamps (where it has any), then sides of its bounding box, then patches of
-/// its surface, each time the one whose centre is farthest from those before. The last one is the held-out one.
+/// its surface, each time the one whose centre is farthest from those before. The held-out one is the second: the
+/// farthest from the body's own, as the other end of a beam.
 ///
 /// Every set but the body's own leaves no rigid motion (`holds_rigidly`), holds at most half of the nodes, and shares
 /// with no other more than half of the nodes that both hold together. The result goes by positions, not by node
@@ -204,8 +205,9 @@ template <int Dim, std::floating_point Scalar>
     }
     ClampSets result;
     if (options.held_out) {
-        result.held_out = std::move(sets.back());
-        sets.pop_back();
+        const auto farthest = sets.begin() + 1;
+        result.held_out = std::move(*farthest);
+        sets.erase(farthest);
     }
     result.training = std::move(sets);
     return result;

@@ -60,7 +60,7 @@ public:
         Field field = Field::Zero(Dim, x().cols());
         const Point middle = x().col(nearest(point(random)));
         const Point along = direction(random);
-        const Scalar size = radius(random);
+        const Scalar size = std::max(radius(random), least_radius(middle));
         for (int node : m_reach) {
             field.col(node) = weight(node, middle, size) * along;
         }
@@ -85,7 +85,7 @@ public:
         require((one - other).norm() > 0, "body", "free surface nodes apart from each other", "none");
         Field field = Field::Zero(Dim, x().cols());
         const Point ends[2] = {one, other};
-        const Scalar size = radius(random);
+        const Scalar size = std::max({radius(random), least_radius(one), least_radius(other)});
         Scalar totals[2] = {0, 0};
         Point middles[2] = {Point::Zero(), Point::Zero()};
         for (int end = 0; end < 2; ++end) {
@@ -197,6 +197,19 @@ private:
 
     /// Of a patch, 10 to 20 % of the body's size.
     [[nodiscard]] Scalar radius(std::mt19937& random) const { return (1 + part(random)) * m_size / 10; }
+
+    /// The distance from a surface node to the second ring or so of its neighbours on the surface: a mesh does not
+    /// resolve the answer to loads that change faster.
+    [[nodiscard]] Scalar least_radius(const Point& middle) const {
+        const std::size_t n_neighbours = Dim == 2 ? 5 : 20;
+        std::vector<Scalar> distances;
+        for (int node : m_reach) {
+            distances.push_back((x().col(node) - middle).norm());
+        }
+        const std::size_t last = std::min(n_neighbours, distances.size() - 1);
+        std::nth_element(distances.begin(), distances.begin() + static_cast<std::ptrdiff_t>(last), distances.end());
+        return distances[last];
+    }
 
     /// Falls from 1 in the middle of a patch to 0 at its radius.
     [[nodiscard]] Scalar weight(int node, const Point& middle, Scalar radius) const {
