@@ -242,9 +242,7 @@ template <int Dim>
             step = detail::reduced_newton_step([&](const Values<double>& v) { return point->product(v); }, diagonal, mu,
                                                gradient, active, options.cg_tolerance, options.max_cg_iterations);
         }
-        if (const double largest = step.cwiseAbs().maxCoeff(); largest > options.max_step) {
-            step *= options.max_step / largest;
-        }
+        step = step.cwiseMax(-options.max_step).cwiseMin(options.max_step); // by entry: the others go on
         const Values<double> theta = (point->theta() + step).cwiseMax(lower).cwiseMin(upper);
         Values<double> trial_gradient;
         ++report.evaluations;

@@ -42,9 +42,10 @@ template <int Dim, std::floating_point Scalar>
 }
 
 /// True where clamping these nodes leaves no rigid motion: they do not all lie close to one point, in space not to one
-/// straight line either. "Close" is a root mean square distance of a thousandth of the body's size. O(nodes).
+/// straight line either. "Close" is a root mean square distance of the part `close` of the body's size. O(nodes).
 template <int Dim, std::floating_point Scalar>
-[[nodiscard]] bool holds_rigidly(const Points<Dim, Scalar>& rest_positions, const std::vector<int>& nodes) {
+[[nodiscard]] bool holds_rigidly(const Points<Dim, Scalar>& rest_positions, const std::vector<int>& nodes,
+                                 std::type_identity_t<Scalar> close = Scalar(1e-3)) {
     if (nodes.size() < static_cast<std::size_t>(Dim)) {
         return false;
     }
@@ -53,7 +54,7 @@ template <int Dim, std::floating_point Scalar>
     const Points<Dim, Scalar> arms = held.colwise() - held.rowwise().mean();
     const Eigen::Matrix<Scalar, Dim, Dim> spread = arms * arms.transpose() / static_cast<Scalar>(nodes.size());
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<Scalar, Dim, Dim>> directions(spread, Eigen::EigenvaluesOnly);
-    return directions.eigenvalues()(1) > Scalar(1e-6) * size * size; // Dim - 1 directions are spanned
+    return directions.eigenvalues()(1) > close * close * size * size; // Dim - 1 directions are spanned
 }
 
 struct ClampSetOptions {
@@ -103,20 +104,10 @@ public:
 
     /// The side, or where none is left the patch of surface, that is farthest from the sets before; empty: no more.
     std::vector<int> next() {
-        std::vector<std::vector<int>> candidates;
-        std::copy_if(m_sides.begin(), m_sides.end(), std::back_inserter(candidates),
-                     [&](const auto& side) { return is_usable(side); });
-        if (candidates.empty()) {
-            for (int node : m_body->surface) {
-                auto patch = patch_around(node);
-                if (is_usable(patch)) {
-                    candidates.push_back(std::move(patch));
-                }
-            }
-        }
+        const std::vector<std::vector<int>> candidates = usable_sets();
         std::vector<int> best;
         std::vector<long> first; // the farthest; of those equally far but for rounding, the first by position
-        for (auto& nodes : candidates) {
+        for (const auto& nodes : candidates) {
             const Vector<Dim, Scalar> centre = centre_of<Dim, Scalar>(m_body->rest_positions, nodes);
             std::vector<long> order = {-in_steps(distance_from_taken(centre))};
             for (int d = 0; d < Dim; ++d) {
@@ -124,7 +115,7 @@ public:
             }
             if (first.empty() || order < first) {
                 first = std::move(order);
-                best = std::move(nodes);
+                best = nodes;
             }
         }
         return best;
@@ -134,9 +125,29 @@ private:
     /// A length in steps of 1/5000 of the body's size, which rounding seldom changes.
     [[nodiscard]] long in_steps(Scalar length) const { return std::lround(5000 * length / m_size); }
 
-    [[nodiscard]] bool is_usable(const std::vector<int>& nodes) const {
+    /// Sides, else patches, that hold the body firmly; where there are none, those that just hold it. A body that is
+    /// held by its thinnest end swings on it, and the few springs there decide how.
+    [[nodiscard]] std::vector<std::vector<int>> usable_sets() const {
+        std::vector<std::vector<int>> sets;
+        for (const Scalar close : {Scalar(0.04), Scalar(1e-3)}) {
+            std::copy_if(m_sides.begin(), m_sides.end(), std::back_inserter(sets),
+                         [&](const auto& side) { return is_usable(side, close); });
+            const bool no_side = sets.empty();
+            for (std::size_t s = 0; no_side && s < m_body->surface.size(); ++s) {
+                if (auto patch = patch_around(m_body->surface[s]); is_usable(patch, close)) {
+                    sets.push_back(std::move(patch));
+                }
+            }
+            if (!sets.empty()) {
+                break;
+            }
+        }
+        return sets;
+    }
+
+    [[nodiscard]] bool is_usable(const std::vector<int>& nodes, Scalar close) const {
         return 2 * static_cast<Index>(nodes.size()) <= m_body->n_nodes() &&
-               holds_rigidly(m_body->rest_positions, nodes) &&
+               holds_rigidly(m_body->rest_positions, nodes, close) &&
                std::none_of(m_taken.begin(), m_taken.end(), [&](const auto& set) { return overlap(set, nodes); });
     }
 
@@ -177,7 +188,8 @@ private:
 } // namespace detail
 
 /// Different ways to clamp a body: its own clamps (where it has any), then sides of its bounding box, then patches of
-/// its surface, each time the one whose centre is farthest from those before. The held-out one is the second: the
+/// its surface, each time the one whose centre is farthest from those before; those that hold the body firmly, by more
+/// than 4 % of its size in root mean square, come first. The held-out one is the second: the
 /// farthest from the body's own, as the other end of a beam.
 ///
 /// Every set but the body's own leaves no rigid motion (`holds_rigidly`), holds at most half of the nodes, and shares

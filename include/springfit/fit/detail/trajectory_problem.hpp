@@ -305,7 +305,7 @@ Values<double> TrajectoryPoint<Dim>::curvature(int probes) {
 template <int Dim>
 bool TrajectoryPoint<Dim>::has_dense() const {
     const auto& parameters = m_problem->m_parameters;
-    if (!m_problem->is_static() || m_problem->n_unknowns() > 2500) {
+    if (!m_problem->is_static() || m_problem->n_unknowns() > 1000) {
         return false;
     }
     for (Index e = 0; e < m_network.n_springs(); ++e) {
