@@ -104,6 +104,16 @@ Values<double> reduced_newton_step(const Product& product, const Values<double>&
     return step;
 }
 
+/// Shortens a step to a root mean square of a third of `most`, then each entry to `most`: a few entries of which little
+/// is known do not hold up the others.
+inline void limit(Values<double>& step, double most) {
+    const double mean = std::sqrt(step.squaredNorm() / static_cast<double>(step.size()));
+    if (3 * mean > most) {
+        step *= most / (3 * mean);
+    }
+    step = step.cwiseMax(-most).cwiseMin(most);
+}
+
 inline double largest_projected(const Values<double>& gradient, const std::vector<bool>& active) {
     double largest = 0;
     for (Index u = 0; u < gradient.size(); ++u) {
@@ -242,7 +252,7 @@ template <int Dim>
             step = detail::reduced_newton_step([&](const Values<double>& v) { return point->product(v); }, diagonal, mu,
                                                gradient, active, options.cg_tolerance, options.max_cg_iterations);
         }
-        step = step.cwiseMax(-options.max_step).cwiseMin(options.max_step); // by entry: the others go on
+        detail::limit(step, options.max_step);
         const Values<double> theta = (point->theta() + step).cwiseMax(lower).cwiseMin(upper);
         Values<double> trial_gradient;
         ++report.evaluations;
