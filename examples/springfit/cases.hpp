@@ -27,10 +27,12 @@ struct ReferenceCases {
     springfit::io::Json description; ///< for the report
 };
 
-/// Records the FEM reference under random load cases, scaled to the wanted deformation and to the body's own time.
+/// Records the FEM reference under random load cases, scaled to the wanted deformation and to the body's own time. `body`
+/// is that of the reference; `network` sets the damping that is light for its springs, where no other was asked for.
 template <int Dim>
-[[nodiscard]] ReferenceCases<Dim> record_cases(const FemReference<Dim>& reference, const Discretisation<Dim>& body,
-                                               const FitOptions& options, const springfit::Execution& execution);
+[[nodiscard]] ReferenceCases<Dim> record_cases(const FemReference<Dim>& reference, springfit::Body<Dim, double> body,
+                                               const Discretisation<Dim>& network, const FitOptions& options,
+                                               const springfit::Execution& execution);
 
 /// Splits recorded motions: the last quarter of several, or the last third of the time of a single one, is held out.
 /// Throws InvalidArgument where a motion has another number of nodes than the body, or too few frames.

@@ -154,6 +154,9 @@ TEST_CASE("a coarse node is clamped where all that it is read from is") {
         }
     }
     CHECK(coarse.clamped == expected);
+    CHECK(targets_of(pair.at_coarse, motion.clamped) == expected);
+    CHECK(targets_of(pair.at_coarse, {}).empty());
+    CHECK_THROWS_AS((void)targets_of(pair.at_coarse, {216}), InvalidArgument);
     CHECK(coarse.n_frames() == 0);
 }
 

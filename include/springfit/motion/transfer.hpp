@@ -112,13 +112,43 @@ template <int Dim, std::floating_point Scalar, CellType Cell>
     return result;
 }
 
+/// The targets that are read from these sources alone, ascending, each once: where every node that a point is read from
+/// is clamped, so is the point. Weights of rounding do not count; a target without any weight is not among them.
+///
+/// Throws InvalidArgument for a source out of range. O(weights).
+template <std::floating_point Scalar>
+[[nodiscard]] std::vector<int> targets_of(const Interpolation<Scalar>& interpolation, const std::vector<int>& sources) {
+    std::vector<bool> chosen(static_cast<std::size_t>(interpolation.n_sources()), false);
+    for (int node : sources) {
+        require(node >= 0 && node < interpolation.n_sources(), "sources",
+                text("node numbers in [0, ", interpolation.n_sources(), ")"), node);
+        chosen[static_cast<std::size_t>(node)] = true;
+    }
+    const Scalar rounding = std::sqrt(std::numeric_limits<Scalar>::epsilon());
+    std::vector<int> targets;
+    for (Index c = 0; c < interpolation.n_targets(); ++c) {
+        bool any = false;
+        bool all = true;
+        for (typename SparseMatrix<Scalar>::InnerIterator weight(interpolation.weights, c); weight; ++weight) {
+            if (std::abs(weight.value()) > rounding) {
+                any = true;
+                all = all && chosen[static_cast<std::size_t>(weight.row())];
+            }
+        }
+        if (any && all) {
+            targets.push_back(static_cast<int>(c));
+        }
+    }
+    return targets;
+}
+
 /// The motion of a fine mesh carried to the nodes of a coarser network.
 ///
-/// Kinematics are read off at the coarse nodes (`at_coarse`: fine nodes to coarse nodes): a coarse node moves from its rest
-/// position by the interpolated displacement, so an affine motion comes out exactly. External forces are handed over by the
-/// adjoint of the other interpolation (`at_fine`: coarse nodes to fine nodes): the total force is kept exactly, and the
-/// moment as far as `at_fine` reproduces the fine positions. A coarse node is clamped where every fine node that it is
-/// read from is.
+/// Kinematics are read off at the coarse nodes (`at_coarse`: fine nodes to coarse nodes): a coarse node moves from its
+/// rest position by the interpolated displacement, so an affine motion comes out exactly. External forces are handed
+/// over by the adjoint of the other interpolation (`at_fine`: coarse nodes to fine nodes): the total force is kept
+/// exactly, and the moment as far as `at_fine` reproduces the fine positions. A coarse node is clamped where every fine
+/// node that it is read from is (`targets_of`).
 ///
 /// Throws InvalidArgument for sizes that do not fit and for weights that do not sum to 1. O(frames * weights).
 template <int Dim, std::floating_point Scalar>
@@ -141,20 +171,7 @@ template <int Dim, std::floating_point Scalar>
     coarse.name = fine.name;
     coarse.rest_positions = coarse_rest_positions;
     coarse.times = fine.times;
-    std::vector<bool> held(static_cast<std::size_t>(n_fine), false);
-    for (int node : fine.clamped) {
-        held[static_cast<std::size_t>(node)] = true;
-    }
-    const Scalar rounding = std::sqrt(std::numeric_limits<Scalar>::epsilon());
-    for (Index c = 0; c < n_coarse; ++c) {
-        bool all_held = true;
-        for (typename SparseMatrix<Scalar>::InnerIterator weight(at_coarse.weights, c); weight; ++weight) {
-            all_held = all_held && (std::abs(weight.value()) <= rounding || held[static_cast<std::size_t>(weight.row())]);
-        }
-        if (all_held) {
-            coarse.clamped.push_back(static_cast<int>(c));
-        }
-    }
+    coarse.clamped = targets_of(at_coarse, fine.clamped);
     for (std::size_t t = 0; t < fine.times.size(); ++t) {
         const Points<Dim, Scalar> displacement = fine.positions[t] - fine.rest_positions;
         coarse.positions.push_back(coarse_rest_positions + interpolate(at_coarse, displacement));
