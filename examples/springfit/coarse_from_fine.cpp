@@ -15,6 +15,10 @@ using namespace springfit;
 
 namespace {
 
+/// A node of the network is held where held nodes make up this part of what it is read from: whatever the meshes, the
+/// network is then held where `--clamp` says.
+constexpr double clamped_share = 0.5;
+
 /// A replay that starts at rest, where the body's own scenario did.
 template <int Dim>
 Scenario<Dim, double> from_rest(const Motion<Dim, double>& motion) {
@@ -57,7 +61,8 @@ CoarseFromFine<Dim>::CoarseFromFine(const FineMesh& fine, const FitOptions& opti
                               "a mesh so fine that every node of the network takes a share of its mass",
                               text(m_body.n_nodes(), " nodes beside ", m_network_positions.cols()));
     }
-    const auto held = targets_of(fine.at_network, clamped_nodes<Dim>(sides_to_clamp(options), m_body.rest_positions));
+    const auto held =
+        targets_of(fine.at_network, clamped_nodes<Dim>(sides_to_clamp(options), m_body.rest_positions), clamped_share);
     require(holds_rigidly(m_network_positions, held), "--clamp",
             "sides so deep (y-min:0.1) that they hold the network as they hold the reference",
             text(held.size(), " of its nodes held"));
@@ -77,7 +82,7 @@ ReferenceCases<Dim> CoarseFromFine<Dim>::carried_to_network(ReferenceCases<Dim> 
     for (auto* set : {&recorded.training, &recorded.held_out}) {
         CaseSet<Dim> carried;
         for (auto& motion : set->motions) {
-            auto at_network = transfer(motion, m_fine.at_network, m_fine.at_fine, m_network_positions);
+            auto at_network = transfer(motion, m_fine.at_network, m_fine.at_fine, m_network_positions, clamped_share);
             if (motion.n_frames() == 1 && !holds_rigidly(m_network_positions, at_network.clamped)) {
                 recorded.warnings.push_back(text("load case ", motion.name, ": left out, as its clamps hold only ",
                                                  at_network.clamped.size(), " nodes of the network"));

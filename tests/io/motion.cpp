@@ -174,7 +174,7 @@ TEST_CASE_TEMPLATE("the surface that a network carries is a motion of triangles,
     const auto read = read_motion<Dim, Scalar>(folder / "motion.xdmf");
     CHECK(read.motion.rest_positions == surface.rest_positions);
     CHECK(read.topology.kind.has_value() == (Dim == 3));
-    if (Dim == 3) {
+    if constexpr (Dim == 3) {
         CHECK(read.topology.kind == CellKind::triangle);
         CHECK(read.topology.cells == surface.cells);
     } else {
