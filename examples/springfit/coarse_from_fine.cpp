@@ -19,16 +19,6 @@ namespace {
 /// network is then held where `--clamp` says.
 constexpr double clamped_share = 0.5;
 
-/// A replay that starts at rest, where the body's own scenario did.
-template <int Dim>
-Scenario<Dim, double> from_rest(const Motion<Dim, double>& motion) {
-    auto scenario = replay(motion);
-    if (motion.n_frames() == 1) {
-        scenario.initial_positions.resize(Dim, 0);
-    }
-    return scenario;
-}
-
 /// Positions of the network in the frames of a case: as far as it comes in time, at rest for a single frame.
 template <int Dim>
 std::vector<Points<Dim, double>>
@@ -40,11 +30,7 @@ positions_under(const SpringNetwork<Dim, double>& network, const Scenario<Dim, d
     EquilibriumOptions<Dim, double> how;
     how.time = reference.times.front();
     how.max_iterations = 100;
-    auto rest = equilibrium(network, scenario, how);
-    if (rest.status != Status::converged) {
-        how.start = reference.positions.front();
-        rest = equilibrium(network, scenario, how);
-    }
+    const auto rest = equilibrium(network, scenario, how); // from the reference's positions, where a replay starts
     (void)go_on(progress, "balance", 1);
     return rest.status == Status::converged ? std::vector{rest.positions} : std::vector<Points<Dim, double>>{};
 }
@@ -88,7 +74,7 @@ ReferenceCases<Dim> CoarseFromFine<Dim>::carried_to_network(ReferenceCases<Dim> 
                                                  at_network.clamped.size(), " nodes of the network"));
                 continue;
             }
-            carried.scenarios.push_back(from_rest<Dim>(at_network));
+            carried.scenarios.push_back(replay(at_network));
             carried.motions.push_back(std::move(at_network));
             if (set == &recorded.held_out) {
                 m_held_out.push_back(std::move(motion));
@@ -96,6 +82,8 @@ ReferenceCases<Dim> CoarseFromFine<Dim>::carried_to_network(ReferenceCases<Dim> 
         }
         *set = std::move(carried);
     }
+    require(!recorded.training.motions.empty() && !recorded.held_out.motions.empty(), "--clamp",
+            "clamps that hold the network in at least one training and one held-out case", "none");
     recorded.description["nodes"] = m_body.n_nodes();
     return recorded;
 }
@@ -125,9 +113,18 @@ io::Json CoarseFromFine<Dim>::errors_at_fine_nodes(const SpringNetwork<Dim, doub
         fine[c] = m_held_out[c];
         fine[c].clamped.clear(); // of all nodes: the network may move those, too
     });
-    const double error = interrupted() ? std::numeric_limits<double>::infinity() : motion_error(by_network, fine).error;
-    return {
-        {"nodes", m_body.n_nodes()}, {"error", error}, {"error_of_carrying", motion_error(by_reference, fine).error}};
+    auto judged = motion_error(by_network, fine);
+    if (interrupted()) {
+        judged.error = std::numeric_limits<double>::infinity();
+    }
+    io::Json cases = io::Json::object();
+    for (std::size_t c = 0; c < n; ++c) {
+        cases[fine[c].name] = judged.case_errors[c];
+    }
+    return {{"nodes", m_body.n_nodes()},
+            {"error", judged.error},
+            {"error_of_carrying", motion_error(by_reference, fine).error},
+            {"cases", cases}};
 }
 
 template <int Dim>

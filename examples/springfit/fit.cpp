@@ -166,7 +166,10 @@ int fit_body(const AnyMesh& mesh, const std::optional<FineMesh>& fine_mesh,
         const AnyMesh& reference_mesh = fine_mesh ? fine_mesh->mesh : mesh;
         auto on_reference = record_cases<Dim>(*make_fem_reference<Dim>(reference_mesh, options),
                                               body_of<Dim>(reference_mesh, options), body, options, execution);
-        return fine ? fine->carried_to_network(std::move(on_reference)) : on_reference;
+        if (fine) {
+            return fine->carried_to_network(std::move(on_reference));
+        }
+        return on_reference;
     }();
     since(recording, "reference");
     warnings.insert(warnings.end(), cases.warnings.begin(), cases.warnings.end());
@@ -261,7 +264,6 @@ int fit_body(const AnyMesh& mesh, const std::optional<FineMesh>& fine_mesh,
             fits[candidate.name]["caveat"] = candidate.caveat;
         }
     }
-    report.warnings = warnings;
     report.detail = {{"fits", fits},
                      {"reference", cases.description},
                      {"seed", options.seed},
@@ -274,6 +276,7 @@ int fit_body(const AnyMesh& mesh, const std::optional<FineMesh>& fine_mesh,
     io::OutputGroup outputs;
     const Timer writing;
     write_shown_motion<Dim>(outputs, folder.path(), body, cases.held_out, chosen.network, fine, warnings);
+    report.warnings = warnings;
     io::write_model(outputs, folder.path() / "model.json", model);
     since(writing, "write");
     for (const auto& stage : stages) {
