@@ -20,8 +20,11 @@ public:
     /// The boundary of the fine mesh, carried by the network.
     [[nodiscard]] const springfit::CarriedSurface<Dim, double>& surface() const { return m_surface; }
 
+    /// True where clamping these nodes of the fine mesh leaves the network no rigid motion.
+    [[nodiscard]] bool holds_network(const std::vector<int>& clamped) const;
+
     /// Load cases that were recorded on the fine mesh, carried to the nodes of the network; the fine motions of the
-    /// held-out ones are kept. Equilibria whose clamps do not hold the network are left out, and a warning says so.
+    /// held-out ones are kept.
     [[nodiscard]] ReferenceCases<Dim> carried_to_network(ReferenceCases<Dim> recorded);
 
     /// The report's part on how far the fine nodes that the network carries are from where the reference had them in

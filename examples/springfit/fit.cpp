@@ -165,7 +165,10 @@ int fit_body(const AnyMesh& mesh, const std::optional<FineMesh>& fine_mesh,
         }
         const AnyMesh& reference_mesh = fine_mesh ? fine_mesh->mesh : mesh;
         auto on_reference = record_cases<Dim>(*make_fem_reference<Dim>(reference_mesh, options),
-                                              body_of<Dim>(reference_mesh, options), body, options, execution);
+                                              body_of<Dim>(reference_mesh, options), body, options, execution,
+                                              [&](const std::vector<int>& clamped) {
+                                                  return !fine || fine->holds_network(clamped);
+                                              });
         if (fine) {
             return fine->carried_to_network(std::move(on_reference));
         }

@@ -120,7 +120,7 @@ def check_surface(out, model, fitted_only=False):
 for name, dimension, total, nodes in (("cube.off", 3, 1000, 40), ("sheet.wkt", 2, 3000, 40)):
     out = folder / ("coarse-" + name)
     run("fit", folder / name, "--young", 1e4, "--poisson", 0.3, "--density", 1000, "--nodes", nodes, "--reference-nodes",
-        6 * nodes, "--training-cases", 1, "--held-out-cases", 1, "--static-cases", 6, "--frames", 10, "--clamp", "x-min:0.1",
+        6 * nodes, "--training-cases", 1, "--held-out-cases", 1, "--static-cases", 6, "--strain", 0.02, "--frames", 10, "--clamp", "x-min:0.1",
         "--method", "trajectory", "--out", out)
     assert sorted(p.name for p in out.iterdir()) == ["model.json", "motion.h5", "motion.xdmf", "report.json", "surface.h5",
                                                      "surface.xdmf"]
@@ -132,6 +132,7 @@ for name, dimension, total, nodes in (("cube.off", 3, 1000, 40), ("sheet.wkt", 2
     at_fine = report["detail"]["reference_nodes"]
     assert report["nodes"] < 2 * nodes < 4 * nodes < at_fine["nodes"]
     assert 0 < at_fine["error_of_carrying"] < at_fine["error"] < 1, at_fine
+    assert set(at_fine["cases"]) == set(report["detail"]["reference"]["held_out_cases"])
     carried, reference = check_surface(out, model)
     assert numpy.linalg.norm(carried - reference) < numpy.linalg.norm(reference)
     stepped = folder / ("coarse-stepped-" + name)
