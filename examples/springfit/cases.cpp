@@ -92,8 +92,8 @@ void add_statics(const FemReference<Dim>& reference, const Body<Dim, double>& bo
         });
     }
     if (n_left_out > 0) {
-        result.warnings.push_back(text(n_left_out, " equilibria are left out: their clamps, which would hold the reference, "
-                                                   "hold too few nodes of the network; more --nodes may help"));
+        result.warnings.push_back(text(n_left_out, " equilibria are left out: their clamps hold the reference, but too few "
+                                                   "nodes of the network; more --nodes may help"));
     }
     std::vector<Scenario<Dim, double>> scenarios = split.training;
     scenarios.insert(scenarios.end(), split.held_out_loads.begin(), split.held_out_loads.end());

@@ -29,9 +29,9 @@ struct ReferenceCases {
     springfit::io::Json description; ///< for the report
 };
 
-/// Records the FEM reference under random load cases, scaled to the wanted deformation and to the body's own time. `body`
-/// is that of the reference; `network` sets the damping that is light for its springs, where no other was asked for.
-/// Equilibria are left out, with a warning, whose clamped nodes `holds` does not accept.
+/// Records the FEM reference under random load cases, scaled to the wanted deformation and to the body's own time.
+/// `body` is that of the reference; `network` sets the damping that is light for its springs, where no other was asked
+/// for. Equilibria whose clamped nodes `holds` does not accept are left out, with a warning.
 template <int Dim>
 [[nodiscard]] ReferenceCases<Dim> record_cases(const FemReference<Dim>& reference, springfit::Body<Dim, double> body,
                                                const Discretisation<Dim>& network, const FitOptions& options,

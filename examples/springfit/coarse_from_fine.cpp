@@ -19,6 +19,16 @@ namespace {
 /// network is then held where `--clamp` says.
 constexpr double clamped_share = 0.5;
 
+/// A replay whose equilibria are looked for from rest first, as those of a reference on the network's own mesh are.
+template <int Dim>
+Scenario<Dim, double> from_rest(const Motion<Dim, double>& motion) {
+    auto scenario = replay(motion);
+    if (motion.n_frames() == 1) {
+        scenario.initial_positions.resize(Dim, 0);
+    }
+    return scenario;
+}
+
 /// Positions of the network in the frames of a case: as far as it comes in time, at rest for a single frame.
 template <int Dim>
 std::vector<Points<Dim, double>>
@@ -30,7 +40,11 @@ positions_under(const SpringNetwork<Dim, double>& network, const Scenario<Dim, d
     EquilibriumOptions<Dim, double> how;
     how.time = reference.times.front();
     how.max_iterations = 100;
-    const auto rest = equilibrium(network, scenario, how); // from the reference's positions, where a replay starts
+    auto rest = equilibrium(network, scenario, how);
+    if (rest.status != Status::converged) {
+        how.start = reference.positions.front();
+        rest = equilibrium(network, scenario, how);
+    }
     (void)go_on(progress, "balance", 1);
     return rest.status == Status::converged ? std::vector{rest.positions} : std::vector<Points<Dim, double>>{};
 }
@@ -72,7 +86,7 @@ ReferenceCases<Dim> CoarseFromFine<Dim>::carried_to_network(ReferenceCases<Dim> 
         CaseSet<Dim> carried;
         for (auto& motion : set->motions) {
             auto at_network = transfer(motion, m_fine.at_network, m_fine.at_fine, m_network_positions, clamped_share);
-            carried.scenarios.push_back(replay(at_network));
+            carried.scenarios.push_back(from_rest<Dim>(at_network));
             carried.motions.push_back(std::move(at_network));
             if (set == &recorded.held_out) {
                 m_held_out.push_back(std::move(motion));

@@ -51,7 +51,8 @@ Body<Dim, double> body_of(const AnyMesh& any, const FitOptions& options) {
             if constexpr (MeshDim != Dim) {
                 throw InvalidArgument("mesh", text("dimension ", Dim), text(MeshDim));
             } else {
-                Body<Dim, double> body{mesh.nodes, node_masses(mesh, options.density, options.thickness.value_or(1)), {}, {}};
+                const auto masses = node_masses(mesh, options.density, options.thickness.value_or(1));
+                Body<Dim, double> body{mesh.nodes, masses, {}, {}};
                 if constexpr (Cell::dimension == 3) {
                     body.surface = boundary_nodes(mesh);
                 } else { // a hand reaches every node of a sheet

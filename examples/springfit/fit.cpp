@@ -115,8 +115,8 @@ void print_table(const std::vector<Candidate<Dim>>& candidates, std::size_t best
                 "reference's motion beside the first closed form)\n\n");
 }
 
-/// Writes the motion of the reference and of the network under the first held-out load case, as far as both go; the same
-/// at the points of the surface that the network carries, where there is one.
+/// Writes the motion of the reference and of the network under the first held-out load case, as far as both go, and
+/// where there is a surface that the network carries the same at its points.
 template <int Dim>
 void write_shown_motion(io::OutputGroup& outputs, const std::filesystem::path& folder, const Discretisation<Dim>& body,
                         const CaseSet<Dim>& held_out, const SpringNetwork<Dim, double>& network,
@@ -145,7 +145,8 @@ void write_shown_motion(io::OutputGroup& outputs, const std::filesystem::path& f
 
 template <int Dim>
 int fit_body(const AnyMesh& mesh, const std::optional<FineMesh>& fine_mesh,
-             std::vector<Motion<Dim, double>> recorded, std::vector<std::string> warnings, const FitOptions& options, io::OutputFolder& folder, io::NamedNumbers stages) {
+             std::vector<Motion<Dim, double>> recorded, std::vector<std::string> warnings, const FitOptions& options,
+             io::OutputFolder& folder, io::NamedNumbers stages) {
     const auto since = [&stages](const Timer& timer, const char* name) { stages.emplace_back(name, timer.seconds()); };
     const Execution execution = parallel::tbb(options.threads);
     Discretisation<Dim> body = discretise<Dim>(mesh, options);

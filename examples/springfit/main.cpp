@@ -100,7 +100,9 @@ void declare_fit(CLI::App& app, program::FitOptions& options) {
 
 void declare_simulate(CLI::App& app, program::SimulateOptions& options) {
     app.add_option("MODEL", options.model, "a model.json")->required();
-    app.add_option("--out", options.out, "folder for motion.h5 and motion.xdmf; surface.h5 and surface.xdmf where the model has one")->required();
+    app.add_option("--out", options.out,
+                   "folder for motion.h5 and motion.xdmf; surface.h5 and surface.xdmf where the model has a surface")
+        ->required();
     app.add_option_function<std::vector<double>>(
            "--gravity", [&options](const std::vector<double>& g) { options.gravity = g; },
            "acceleration of the whole body, m/s^2, one number per dimension (default 0,-9.81[,0])")

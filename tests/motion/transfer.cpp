@@ -66,7 +66,7 @@ auto moment(const Points<Dim, Scalar>& positions, const Points<Dim, Scalar>& for
     for (Index i = 1; i < forces.cols(); ++i) {
         sum += cross<Scalar>(Vector<Dim, Scalar>(positions.col(i)), Vector<Dim, Scalar>(forces.col(i)));
     }
-    return Values<Scalar>(Eigen::Matrix<Scalar, Dim == 2 ? 1 : 3, 1>(sum));
+    return Values<Scalar>(Eigen::Matrix < Scalar, Dim == 2 ? 1 : 3, 1 > (sum));
 }
 
 /// A fine grid of five boxes along each axis beside a coarse one of two: no fine plane is a coarse one.
@@ -190,7 +190,8 @@ TEST_CASE_TEMPLATE("a coarse node that is half held is clamped on request, and m
         const bool held = std::binary_search(half.clamped.begin(), half.clamped.end(), static_cast<int>(c));
         CHECK(held == (pair.coarse(0, c) < Scalar(0.75)));
         if (held) {
-            CHECK(test::relative(half.positions[0](1, c), pair.coarse(1, c) + Scalar(0.25), Scalar(1)) < rounding<Scalar>());
+            CHECK(test::relative(half.positions[0](1, c), pair.coarse(1, c) + Scalar(0.25), Scalar(1)) <
+                  rounding<Scalar>());
             CHECK(test::relative(half.velocities[0](0, c), Scalar(2), Scalar(2)) < rounding<Scalar>());
         } else {
             CHECK(half.positions[0].col(c) == strict.positions[0].col(c));

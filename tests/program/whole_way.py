@@ -119,11 +119,11 @@ def check_surface(out, model, fitted_only=False):
 (folder / "sheet.wkt").write_text("POLYGON((0 0, 3 0, 3 1, 0 1, 0 0))\n")
 for name, dimension, total, nodes in (("cube.off", 3, 1000, 40), ("sheet.wkt", 2, 3000, 40)):
     out = folder / ("coarse-" + name)
-    run("fit", folder / name, "--young", 1e4, "--poisson", 0.3, "--density", 1000, "--nodes", nodes, "--reference-nodes",
-        6 * nodes, "--training-cases", 1, "--held-out-cases", 1, "--static-cases", 6, "--strain", 0.02, "--frames", 10, "--clamp", "x-min:0.1",
-        "--method", "trajectory", "--out", out)
-    assert sorted(p.name for p in out.iterdir()) == ["model.json", "motion.h5", "motion.xdmf", "report.json", "surface.h5",
-                                                     "surface.xdmf"]
+    run("fit", folder / name, "--young", 1e4, "--poisson", 0.3, "--density", 1000, "--nodes", nodes,
+        "--reference-nodes", 6 * nodes, "--training-cases", 1, "--held-out-cases", 1, "--static-cases", 6, "--strain", 0.02,
+        "--frames", 10, "--clamp", "x-min:0.1", "--method", "trajectory", "--out", out)
+    assert sorted(p.name for p in out.iterdir()) == ["model.json", "motion.h5", "motion.xdmf", "report.json",
+                                                     "surface.h5", "surface.xdmf"]
     model = json.load(open(out / "model.json"))
     report = json.load(open(out / "report.json"))
     check_model(model, report["nodes"], report["springs"], dimension)

@@ -114,8 +114,8 @@ template <int Dim, std::floating_point Scalar, CellType Cell>
     return result;
 }
 
-/// The targets whose weights are, to `share` of them, those of these sources; ascending, each once. The weights count by
-/// their size, and with a share of 1 all of them to rounding.
+/// The targets whose weights are, to `share` of them, those of these sources; ascending, each once. The weights count
+/// by their size, and with a share of 1 all of them to rounding.
 ///
 /// Throws InvalidArgument for a source out of range and a share outside of (0, 1]. O(weights).
 template <std::floating_point Scalar>
@@ -172,15 +172,14 @@ void restrict_columns(SparseMatrix<Scalar>& weights, const std::vector<int>& tar
 /// rest position by the interpolated displacement, so an affine motion comes out exactly. External forces are handed
 /// over by the adjoint of the other interpolation (`at_fine`: coarse nodes to fine nodes): the total force is kept
 /// exactly, and the moment as far as `at_fine` reproduces the fine positions. A coarse node is clamped where fine nodes
-/// that are make up `clamped_share` of what it is read from (`targets_of`), and then moves as those do: with 1, where all
-/// of them are; with 1/2 the clamped region keeps its size, even where it is thinner than the cells.
+/// that are make up `clamped_share` of what it is read from (`targets_of`), and then moves as those do: with 1, where
+/// all of them are; with 1/2 the clamped region keeps its size, even where it is thinner than the cells.
 ///
 /// Throws InvalidArgument for sizes that do not fit and for weights that do not sum to 1. O(frames * weights).
 template <int Dim, std::floating_point Scalar>
-[[nodiscard]] Motion<Dim, Scalar> transfer(const Motion<Dim, Scalar>& fine, const Interpolation<Scalar>& at_coarse,
-                                           const Interpolation<Scalar>& at_fine,
-                                           const Points<Dim, Scalar>& coarse_rest_positions,
-                                           std::type_identity_t<Scalar> clamped_share = 1) {
+[[nodiscard]] Motion<Dim, Scalar>
+transfer(const Motion<Dim, Scalar>& fine, const Interpolation<Scalar>& at_coarse, const Interpolation<Scalar>& at_fine,
+         const Points<Dim, Scalar>& coarse_rest_positions, std::type_identity_t<Scalar> clamped_share = 1) {
     const Index n_fine = fine.n_nodes();
     const Index n_coarse = coarse_rest_positions.cols();
     require(at_coarse.n_sources() == n_fine && at_coarse.n_targets() == n_coarse, "at_coarse",
