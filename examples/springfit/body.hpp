@@ -8,6 +8,7 @@
 #include <springfit/closed_form/cauchy_split.hpp>
 #include <springfit/io/motion_file.hpp>
 #include <springfit/mesh/mesh.hpp>
+#include <springfit/motion/body.hpp>
 #include <springfit/network/spring_network.hpp>
 
 #include "options.hpp"
@@ -26,6 +27,17 @@ using AnyMesh =
 /// Throws FileError or InvalidArgument.
 [[nodiscard]] AnyMesh read_mesh(const FitOptions& options);
 
+/// A finer mesh of the same body, for the reference, and how values pass between its nodes and the network's.
+struct FineMesh {
+    AnyMesh mesh;
+    springfit::Interpolation<double> at_network; ///< nodes of this mesh to nodes of the network
+    springfit::Interpolation<double> at_fine;    ///< nodes of the network to nodes of this mesh
+};
+
+/// Makes the mesh of `--reference-nodes` beside that of the network, which `read_mesh` made from the same input.
+/// Throws FileError or InvalidArgument.
+[[nodiscard]] FineMesh read_fine_mesh(const FitOptions& options, const AnyMesh& coarse);
+
 /// True for the file of a recorded motion.
 [[nodiscard]] bool is_motion_file(const std::string& path);
 
@@ -42,11 +54,17 @@ struct Discretisation {
     std::optional<springfit::CauchySplit<double>> cauchy_split;
     springfit::io::MotionTopology topology;        ///< cells and springs, for the motion files
     std::string cell_name;
-    std::vector<int> surface; ///< nodes on the boundary
 };
 
 template <int Dim>
 [[nodiscard]] Discretisation<Dim> discretise(const AnyMesh& mesh, const FitOptions& options);
+
+/// A mesh as the load cases see it, without clamps: its surface is what a hand can reach, every node of a sheet.
+template <int Dim>
+[[nodiscard]] springfit::Body<Dim, double> body_of(const AnyMesh& mesh, const FitOptions& options);
+
+/// The sides that `--clamp` names, or y-min.
+[[nodiscard]] std::vector<std::string> sides_to_clamp(const FitOptions& options);
 
 /// The nodes that the `--clamp` options name. Throws InvalidArgument for an unknown side or one that holds no node.
 template <int Dim>

@@ -39,6 +39,10 @@ double light_damping(const Discretisation<Dim>& body) {
 
 } // namespace
 
+std::vector<std::string> sides_to_clamp(const FitOptions& options) {
+    return options.clamps.empty() ? std::vector<std::string>{"y-min"} : options.clamps;
+}
+
 template <int Dim>
 std::vector<int> clamped_nodes(const std::vector<std::string>& clamps, const Points<Dim, double>& rest_positions) {
     std::vector<int> nodes;
@@ -73,13 +77,24 @@ namespace {
 /// Equilibria under several clamps, from which matching of motion learns, and others that judge it.
 template <int Dim>
 void add_statics(const FemReference<Dim>& reference, const Body<Dim, double>& body, const FitOptions& options,
-                 const Execution& execution, ReferenceCases<Dim>& result) {
-    const auto split = random_load_cases(body, {.training = options.static_cases.value_or(24),
+                 const Execution& execution, const std::function<bool(const std::vector<int>&)>& holds,
+                 ReferenceCases<Dim>& result) {
+    auto split = random_load_cases(body, {.training = options.static_cases.value_or(24),
                                                 .clamps = 3,
                                                 .held_out_loads = 6,
                                                 .held_out_kinds = 5,
                                                 .held_out_clamp = 0,
                                                 .seed = options.seed + 1000}); // other loads than those in time
+    std::size_t n_left_out = 0;
+    for (auto* set : {&split.training, &split.held_out_loads, &split.held_out_kinds}) {
+        n_left_out += std::erase_if(*set, [&](const auto& scenario) {
+            return !holds(springfit::clamped_nodes(scenario, body.n_nodes()));
+        });
+    }
+    if (n_left_out > 0) {
+        result.warnings.push_back(text(n_left_out, " equilibria are left out: their clamps hold the reference, but too few "
+                                                   "nodes of the network; more --nodes may help"));
+    }
     std::vector<Scenario<Dim, double>> scenarios = split.training;
     scenarios.insert(scenarios.end(), split.held_out_loads.begin(), split.held_out_loads.end());
     scenarios.insert(scenarios.end(), split.held_out_kinds.begin(), split.held_out_kinds.end());
@@ -106,26 +121,29 @@ void add_statics(const FemReference<Dim>& reference, const Body<Dim, double>& bo
 } // namespace
 
 template <int Dim>
-ReferenceCases<Dim> record_cases(const FemReference<Dim>& reference, const Discretisation<Dim>& body,
-                                 const FitOptions& options, const Execution& execution) {
+ReferenceCases<Dim> record_cases(const FemReference<Dim>& reference, Body<Dim, double> body,
+                                 const Discretisation<Dim>& network, const FitOptions& options,
+                                 const Execution& execution,
+                                 const std::function<bool(const std::vector<int>&)>& holds) {
     const double deformation = options.deformation.value_or(0.05);
     require(deformation > 0 && deformation < 1, "--deformation", "a part of the body's size in (0, 1)", deformation);
 
-    const auto& rest = body.network.rest_positions;
+    const auto& rest = body.rest_positions;
     const double size = (rest.rowwise().maxCoeff() - rest.rowwise().minCoeff()).norm();
-    const auto clamps = options.clamps.empty() ? std::vector<std::string>{"y-min"} : options.clamps;
+    const auto clamps = sides_to_clamp(options);
     const std::vector<int> held = clamped_nodes<Dim>(clamps, rest);
-    Body<Dim, double> loaded{rest, body.network.mass, {}, {{held, {}}}};
-    std::set_difference(body.surface.begin(), body.surface.end(), held.begin(), held.end(),
-                        std::back_inserter(loaded.surface)); // a load on held nodes moves nothing
+    body.clamps = {{held, {}}};
+    std::erase_if(body.surface, [&](int node) { // a load on held nodes moves nothing
+        return std::binary_search(held.begin(), held.end(), node);
+    });
     const int n_held_out = options.held_out_cases.value_or(3);
     require(n_held_out >= 1, "--held-out-cases", "at least one load case", n_held_out);
-    const auto split = random_load_cases(loaded, {.training = options.training_cases.value_or(6),
-                                                  .clamps = 1,
-                                                  .held_out_loads = 1,
-                                                  .held_out_kinds = n_held_out - 1,
-                                                  .held_out_clamp = 0,
-                                                  .seed = options.seed});
+    const auto split = random_load_cases(body, {.training = options.training_cases.value_or(6),
+                                                .clamps = 1,
+                                                .held_out_loads = 1,
+                                                .held_out_kinds = n_held_out - 1,
+                                                .held_out_clamp = 0,
+                                                .seed = options.seed});
     struct {
         std::vector<Scenario<Dim, double>> training, held_out;
     } cases{split.training, split.held_out_loads};
@@ -151,7 +169,7 @@ ReferenceCases<Dim> record_cases(const FemReference<Dim>& reference, const Discr
     }
 
     ReferenceCases<Dim> result;
-    result.stiffness_damping = options.damping_ratio ? 2 * *options.damping_ratio / slowest : light_damping(body);
+    result.stiffness_damping = options.damping_ratio ? 2 * *options.damping_ratio / slowest : light_damping(network);
     RecordOptions<double> how;
     how.frames = options.frames.value_or(32);
     require(how.frames >= 3, "--frames", "at least 3", how.frames);
@@ -190,7 +208,7 @@ ReferenceCases<Dim> record_cases(const FemReference<Dim>& reference, const Discr
         }
     }
     if (options.method == "auto" || options.method == "trajectory") {
-        add_statics<Dim>(reference, loaded, options, execution, result);
+        add_statics<Dim>(reference, body, options, execution, holds, result);
     }
     if (result.held_out.motions.empty() || result.training.motions.empty()) {
         if (result.interrupted) {
@@ -247,10 +265,12 @@ ReferenceCases<Dim> split_recorded(std::vector<Motion<Dim, double>> motions, con
 
 template std::vector<int> clamped_nodes<2>(const std::vector<std::string>&, const Points<2, double>&);
 template std::vector<int> clamped_nodes<3>(const std::vector<std::string>&, const Points<3, double>&);
-template ReferenceCases<2> record_cases<2>(const FemReference<2>&, const Discretisation<2>&, const FitOptions&,
-                                               const Execution&);
-template ReferenceCases<3> record_cases<3>(const FemReference<3>&, const Discretisation<3>&, const FitOptions&,
-                                               const Execution&);
+template ReferenceCases<2> record_cases<2>(const FemReference<2>&, Body<2, double>, const Discretisation<2>&,
+                                             const FitOptions&, const Execution&,
+                                             const std::function<bool(const std::vector<int>&)>&);
+template ReferenceCases<3> record_cases<3>(const FemReference<3>&, Body<3, double>, const Discretisation<3>&,
+                                             const FitOptions&, const Execution&,
+                                             const std::function<bool(const std::vector<int>&)>&);
 template ReferenceCases<2> split_recorded<2>(std::vector<Motion<2, double>>, const Discretisation<2>&, const FitOptions&);
 template ReferenceCases<3> split_recorded<3>(std::vector<Motion<3, double>>, const Discretisation<3>&, const FitOptions&);
 

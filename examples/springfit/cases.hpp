@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
+
 #include <springfit/core/execution.hpp>
 #include <springfit/io/report_json.hpp>
 #include <springfit/motion/motion.hpp>
@@ -28,9 +30,13 @@ struct ReferenceCases {
 };
 
 /// Records the FEM reference under random load cases, scaled to the wanted deformation and to the body's own time.
+/// `body` is that of the reference; `network` sets the damping that is light for its springs, where no other was asked
+/// for. Equilibria whose clamped nodes `holds` does not accept are left out, with a warning.
 template <int Dim>
-[[nodiscard]] ReferenceCases<Dim> record_cases(const FemReference<Dim>& reference, const Discretisation<Dim>& body,
-                                               const FitOptions& options, const springfit::Execution& execution);
+[[nodiscard]] ReferenceCases<Dim> record_cases(const FemReference<Dim>& reference, springfit::Body<Dim, double> body,
+                                               const Discretisation<Dim>& network, const FitOptions& options,
+                                               const springfit::Execution& execution,
+                                               const std::function<bool(const std::vector<int>&)>& holds);
 
 /// Splits recorded motions: the last quarter of several, or the last third of the time of a single one, is held out.
 /// Throws InvalidArgument where a motion has another number of nodes than the body, or too few frames.

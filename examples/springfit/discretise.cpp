@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <numeric>
+
 #include <springfit/closed_form/all.hpp>
 #include <springfit/mesh/topology.hpp>
 #include <springfit/network/topology.hpp>
@@ -36,12 +38,26 @@ Discretisation<Dim> discretise(const AnyMesh& any, const FitOptions& options) {
                 }
                 body.topology = io::motion_topology(mesh, body.network.springs);
                 body.cell_name = Cell::name;
-                if constexpr (solid) {
+                return body;
+            }
+        },
+        any);
+}
+
+template <int Dim>
+Body<Dim, double> body_of(const AnyMesh& any, const FitOptions& options) {
+    return std::visit(
+        [&]<int MeshDim, CellType Cell>(const Mesh<MeshDim, double, Cell>& mesh) -> Body<Dim, double> {
+            if constexpr (MeshDim != Dim) {
+                throw InvalidArgument("mesh", text("dimension ", Dim), text(MeshDim));
+            } else {
+                const auto masses = node_masses(mesh, options.density, options.thickness.value_or(1));
+                Body<Dim, double> body{mesh.nodes, masses, {}, {}};
+                if constexpr (Cell::dimension == 3) {
                     body.surface = boundary_nodes(mesh);
                 } else { // a hand reaches every node of a sheet
-                    for (int i = 0; i < static_cast<int>(mesh.n_nodes()); ++i) {
-                        body.surface.push_back(i);
-                    }
+                    body.surface.resize(static_cast<std::size_t>(mesh.n_nodes()));
+                    std::iota(body.surface.begin(), body.surface.end(), 0);
                 }
                 return body;
             }
@@ -71,6 +87,8 @@ AnyMesh mesh_of(const io::RecordedMotion<Dim, double>& recorded, const std::stri
 
 template Discretisation<2> discretise<2>(const AnyMesh&, const FitOptions&);
 template Discretisation<3> discretise<3>(const AnyMesh&, const FitOptions&);
+template Body<2, double> body_of<2>(const AnyMesh&, const FitOptions&);
+template Body<3, double> body_of<3>(const AnyMesh&, const FitOptions&);
 template AnyMesh mesh_of<2>(const io::RecordedMotion<2, double>&, const std::string&);
 template AnyMesh mesh_of<3>(const io::RecordedMotion<3, double>&, const std::string&);
 

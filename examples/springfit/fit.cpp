@@ -13,6 +13,7 @@
 #include <springfit/step/stable_step.hpp>
 
 #include "candidates.hpp"
+#include "coarse_from_fine.hpp"
 #include "commands.hpp"
 #include "interrupt.hpp"
 #include "terminal.hpp"
@@ -40,6 +41,11 @@ void check(const FitOptions& options) {
     }
     if (options.nodes) {
         require(*options.nodes >= 4, "--nodes", "at least 4", *options.nodes);
+    }
+    if (options.reference_nodes && !options.cell_size) {
+        const int nodes = options.nodes.value_or(default_nodes);
+        require(*options.reference_nodes > nodes, "--reference-nodes", text("more than the ", nodes, " of --nodes"),
+                *options.reference_nodes);
     }
     if (options.deformation) {
         require(*options.deformation > 0 && *options.deformation < 1, "--deformation",
@@ -72,6 +78,7 @@ void check(const FitOptions& options) {
         };
         refuse(options.material.has_value(), "--material");
         refuse(options.element.has_value(), "--element");
+        refuse(options.reference_nodes.has_value(), "--reference-nodes");
         refuse(options.training_cases.has_value(), "--training-cases");
         refuse(options.held_out_cases.has_value(), "--held-out-cases");
         refuse(options.frames.has_value(), "--frames");
@@ -108,37 +115,66 @@ void print_table(const std::vector<Candidate<Dim>>& candidates, std::size_t best
                 "reference's motion beside the first closed form)\n\n");
 }
 
-/// Writes the motion of the reference and of the network under one load case, as far as both go.
+/// Writes the motion of the reference and of the network under the first held-out load case, as far as both go, and
+/// where there is a surface that the network carries the same at its points.
 template <int Dim>
-void write_shown_motion(io::OutputGroup& outputs, const std::filesystem::path& h5, const Discretisation<Dim>& body,
-                        const Motion<Dim, double>& reference, const Scenario<Dim, double>& scenario,
-                        const SpringNetwork<Dim, double>& network, std::vector<std::string>& warnings) {
-    const auto fitted = simulate(network, scenario, reference.times).motion;
+void write_shown_motion(io::OutputGroup& outputs, const std::filesystem::path& folder, const Discretisation<Dim>& body,
+                        const CaseSet<Dim>& held_out, const SpringNetwork<Dim, double>& network,
+                        const std::optional<CoarseFromFine<Dim>>& fine, std::vector<std::string>& warnings) {
+    const auto& reference = held_out.motions.front();
+    const auto fitted = simulate(network, held_out.scenarios.front(), reference.times).motion;
     if (fitted.n_frames() < reference.n_frames()) {
         warnings.push_back(text("motion.h5: the network's motion ended after ", fitted.n_frames(), " of ",
                                 reference.n_frames(), " frames"));
     }
-    if (fitted.n_frames() == 0) {
-        io::write_motion(outputs, h5, reference, body.topology);
-        return;
+    const auto write = [&](const char* name, const Motion<Dim, double>& motion, const io::MotionTopology& topology,
+                           const std::vector<Points<Dim, double>>& positions) {
+        if (positions.empty()) {
+            io::write_motion(outputs, folder / name, motion, topology);
+        } else {
+            const auto frames = static_cast<Index>(positions.size());
+            io::write_motion(outputs, folder / name, excerpt(motion, 0, frames), topology, &positions);
+        }
+    };
+    write("motion.h5", reference, body.topology, fitted.positions);
+    if (fine) {
+        const auto& surface = fine->surface();
+        write("surface.h5", fine->shown_at_surface(), io::motion_topology(surface), carry(surface, fitted));
     }
-    io::write_motion(outputs, h5, excerpt(reference, 0, fitted.n_frames()), body.topology, &fitted.positions);
 }
 
 template <int Dim>
-int fit_body(const AnyMesh& mesh, std::vector<Motion<Dim, double>> recorded, std::vector<std::string> warnings,
-             const FitOptions& options, io::OutputFolder& folder, io::NamedNumbers stages) {
+int fit_body(const AnyMesh& mesh, const std::optional<FineMesh>& fine_mesh,
+             std::vector<Motion<Dim, double>> recorded, std::vector<std::string> warnings, const FitOptions& options,
+             io::OutputFolder& folder, io::NamedNumbers stages) {
     const auto since = [&stages](const Timer& timer, const char* name) { stages.emplace_back(name, timer.seconds()); };
     const Execution execution = parallel::tbb(options.threads);
-    const Discretisation<Dim> body = discretise<Dim>(mesh, options);
+    Discretisation<Dim> body = discretise<Dim>(mesh, options);
     std::printf("%lld nodes, %lld %s cells, %lld springs\n", static_cast<long long>(body.network.n_nodes()),
                 static_cast<long long>(body.topology.cells.cols()), body.cell_name.c_str(),
                 static_cast<long long>(body.network.n_springs()));
+    std::optional<CoarseFromFine<Dim>> fine;
+    if (fine_mesh) {
+        fine.emplace(*fine_mesh, options, body);
+        std::printf("%lld nodes of the reference\n", static_cast<long long>(fine->body().n_nodes()));
+    }
 
     const Timer recording;
-    const ReferenceCases<Dim> cases = recorded.empty()
-                                          ? record_cases<Dim>(*make_fem_reference<Dim>(mesh, options), body, options, execution)
-                                          : split_recorded<Dim>(std::move(recorded), body, options);
+    const ReferenceCases<Dim> cases = [&] {
+        if (!recorded.empty()) {
+            return split_recorded<Dim>(std::move(recorded), body, options);
+        }
+        const AnyMesh& reference_mesh = fine_mesh ? fine_mesh->mesh : mesh;
+        auto on_reference = record_cases<Dim>(*make_fem_reference<Dim>(reference_mesh, options),
+                                              body_of<Dim>(reference_mesh, options), body, options, execution,
+                                              [&](const std::vector<int>& clamped) {
+                                                  return !fine || fine->holds_network(clamped);
+                                              });
+        if (fine) {
+            return fine->carried_to_network(std::move(on_reference));
+        }
+        return on_reference;
+    }();
     since(recording, "reference");
     warnings.insert(warnings.end(), cases.warnings.begin(), cases.warnings.end());
 
@@ -153,8 +189,6 @@ int fit_body(const AnyMesh& mesh, std::vector<Motion<Dim, double>> recorded, std
     since(fitting, "fit");
     const Timer scoring;
     score<Dim>(candidates, cases, execution);
-    const bool score_interrupted = interrupted();
-    since(scoring, "score");
 
     const bool choose = options.method == "auto" || options.method == "closed-form";
     std::size_t best = choose ? 0 : candidates.size() - 1; // a method asked for by name comes last
@@ -181,7 +215,19 @@ int fit_body(const AnyMesh& mesh, std::vector<Motion<Dim, double>> recorded, std
         }
     }
     const Candidate<Dim>& chosen = candidates[best];
+    io::Json at_reference_nodes;
+    if (fine) {
+        at_reference_nodes = fine->errors_at_fine_nodes(chosen.network, cases.held_out, execution);
+    }
+    const bool score_interrupted = interrupted();
+    since(scoring, "score");
     print_table<Dim>(candidates, best);
+    if (fine) {
+        std::printf("carried by the network, the %lld nodes of the reference have a held-out error of %.4f, of which "
+                    "carrying alone makes %.4f\n\n",
+                    static_cast<long long>(fine->body().n_nodes()), at_reference_nodes["error"].template get<double>(),
+                    at_reference_nodes["error_of_carrying"].template get<double>());
+    }
     for (const std::string& warning : warnings) {
         std::fprintf(stderr, "warning: %s\n", warning.c_str());
     }
@@ -192,6 +238,9 @@ int fit_body(const AnyMesh& mesh, std::vector<Motion<Dim, double>> recorded, std
         model.data_share = chosen.data_share;
     }
     model.fixed = cases.held_out.motions.front().clamped;
+    if (fine) {
+        model.surface = fine->surface();
+    }
     model.stable_time_step = stable_step(chosen.network, model.fixed);
     model.provenance = {{"springfit", SPRINGFIT_VERSION_STRING}, {"method", chosen.name}, {"input", options.input},
                         {"material", material_of<Dim>(options)},  {"seed", options.seed},  {"reference", cases.description}};
@@ -219,18 +268,19 @@ int fit_body(const AnyMesh& mesh, std::vector<Motion<Dim, double>> recorded, std
             fits[candidate.name]["caveat"] = candidate.caveat;
         }
     }
-    report.warnings = warnings;
     report.detail = {{"fits", fits},
                      {"reference", cases.description},
                      {"seed", options.seed},
                      {"threads", options.threads},
                      {"damping", options.damping}};
+    if (fine) {
+        report.detail["reference_nodes"] = at_reference_nodes;
+    }
 
     io::OutputGroup outputs;
     const Timer writing;
-    const auto& shown = cases.held_out.motions.front();
-    write_shown_motion<Dim>(outputs, folder.path() / "motion.h5", body, shown, cases.held_out.scenarios.front(),
-                            chosen.network, warnings);
+    write_shown_motion<Dim>(outputs, folder.path(), body, cases.held_out, chosen.network, fine, warnings);
+    report.warnings = warnings;
     io::write_model(outputs, folder.path() / "model.json", model);
     since(writing, "write");
     for (const auto& stage : stages) {
@@ -239,7 +289,8 @@ int fit_body(const AnyMesh& mesh, std::vector<Motion<Dim, double>> recorded, std
     report.stage_seconds = stages;
     io::write_report(outputs, folder.path() / "report.json", report);
     outputs.commit();
-    std::printf("wrote model.json, report.json, motion.h5 and motion.xdmf to %s\n", folder.path().string().c_str());
+    std::printf("wrote model.json, report.json, motion.h5%s and the .xdmf beside to %s\n", fine ? ", surface.h5" : "",
+                folder.path().string().c_str());
     return early ? exit_interrupted : 0;
 }
 
@@ -272,8 +323,8 @@ io::RecordedMotion<Dim, double> read_recorded(const std::string& path, std::vect
 
 /// Everything from the body on, for one dimension; `mesh` is empty where INPUT is a recorded motion.
 template <int Dim>
-int fit_dimension(std::optional<AnyMesh> mesh, const FitOptions& options, io::OutputFolder& folder,
-                  io::NamedNumbers stages) {
+int fit_dimension(std::optional<AnyMesh> mesh, const std::optional<FineMesh>& fine_mesh, const FitOptions& options,
+                  io::OutputFolder& folder, io::NamedNumbers stages) {
     std::vector<std::string> warnings;
     std::vector<Motion<Dim, double>> motions;
     if (!mesh) {
@@ -285,7 +336,7 @@ int fit_dimension(std::optional<AnyMesh> mesh, const FitOptions& options, io::Ou
         require(io::read_motion_dimension(path) == Dim, "--reference", text("a motion of dimension ", Dim), path);
         motions.push_back(read_recorded<Dim>(path, warnings).motion);
     }
-    return fit_body<Dim>(*mesh, std::move(motions), std::move(warnings), options, folder, std::move(stages));
+    return fit_body<Dim>(*mesh, fine_mesh, std::move(motions), std::move(warnings), options, folder, std::move(stages));
 }
 
 } // namespace
@@ -295,6 +346,7 @@ int run_fit(const FitOptions& options) {
     io::OutputFolder folder(options.out);
     io::NamedNumbers stages;
     std::optional<AnyMesh> mesh;
+    std::optional<FineMesh> fine_mesh;
     int dimension = 0;
     if (is_motion_file(options.input)) {
         dimension = io::read_motion_dimension(options.input);
@@ -302,13 +354,16 @@ int run_fit(const FitOptions& options) {
         const Timer timer;
         mesh = read_mesh(options);
         dimension = dimension_of(*mesh);
+        if (options.reference_nodes && !interrupted()) {
+            fine_mesh = read_fine_mesh(options, *mesh);
+        }
         stages.emplace_back("mesh", timer.seconds());
     }
     if (interrupted()) {
         throw Interrupted();
     }
-    return dimension == 2 ? fit_dimension<2>(std::move(mesh), options, folder, std::move(stages))
-                          : fit_dimension<3>(std::move(mesh), options, folder, std::move(stages));
+    return dimension == 2 ? fit_dimension<2>(std::move(mesh), fine_mesh, options, folder, std::move(stages))
+                          : fit_dimension<3>(std::move(mesh), fine_mesh, options, folder, std::move(stages));
 }
 
 } // namespace program

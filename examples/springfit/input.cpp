@@ -3,6 +3,7 @@
 
 #include <cstdio>
 
+#include <springfit/cgal/location.hpp>
 #include <springfit/cgal/tetrahedralize.hpp>
 #include <springfit/cgal/triangulate.hpp>
 #include <springfit/io/mesh_file.hpp>
@@ -16,8 +17,6 @@ namespace program {
 using namespace springfit;
 
 namespace {
-
-constexpr int default_nodes = 1000;
 
 [[nodiscard]] std::string extension(const std::string& path) {
     std::string text = std::filesystem::path(path).extension().string();
@@ -33,6 +32,7 @@ constexpr int default_nodes = 1000;
 void refuse_meshing_options(const FitOptions& options) {
     require(!options.cell_size, "--cell-size", "a surface or an outline as INPUT", options.input);
     require(!options.nodes, "--nodes", "a surface or an outline as INPUT", options.input);
+    require(!options.reference_nodes, "--reference-nodes", "a surface or an outline as INPUT", options.input);
     require(options.fill_holes == 0, "--fill-holes", "a surface as INPUT", options.input);
 }
 
@@ -92,6 +92,28 @@ AnyMesh read_mesh(const FitOptions& options) {
             "one of .off .obj .stl .ply .poly .wkt .msh .mesh .node .vtk .xdmf .h5", options.input);
     refuse_meshing_options(options);
     return from_mesh_file(io::read_mesh(options.input));
+}
+
+FineMesh read_fine_mesh(const FitOptions& options, const AnyMesh& coarse) {
+    const int wanted = options.reference_nodes.value();
+    auto finer = options;
+    finer.nodes = wanted;
+    finer.cell_size.reset();
+    return std::visit(
+        [&]<int Dim, CellType Cell>(const Mesh<Dim, double, Cell>& network) -> FineMesh {
+            require(wanted > network.n_nodes(), "--reference-nodes",
+                    text("more than the ", network.n_nodes(), " nodes of the network"), wanted);
+            if constexpr (SimplexCell<Cell> && Cell::dimension == Dim) { // what surfaces and outlines are cut into
+                FineMesh fine{.mesh = read_mesh(finer), .at_network = {}, .at_fine = {}};
+                const auto& mesh = std::get<Mesh<Dim, double, Cell>>(fine.mesh);
+                fine.at_network = cgal::interpolation(mesh, network.nodes);
+                fine.at_fine = cgal::interpolation(network, mesh.nodes);
+                return fine;
+            } else {
+                throw InvalidArgument("--reference-nodes", "a surface or an outline as INPUT", options.input);
+            }
+        },
+        coarse);
 }
 
 } // namespace program

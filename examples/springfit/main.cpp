@@ -28,7 +28,9 @@ void declare_fit(CLI::App& app, program::FitOptions& options) {
     app.add_option("--young", options.young, "Young's modulus, Pa")->required();
     app.add_option("--poisson", options.poisson, "Poisson's ratio, in (-1, 0.5)")->required();
     app.add_option("--density", options.density, "density, kg/m^3")->required();
-    app.add_option("--out", options.out, "folder for model.json, report.json, motion.h5, motion.xdmf")->required();
+    app.add_option("--out", options.out, "folder for model.json, report.json, motion.h5, motion.xdmf; with "
+                                          "--reference-nodes surface.h5, surface.xdmf, too")
+        ->required();
 
     const std::string reference = "Reference simulation";
     add_optional(app, "--material", options.material, "material of the FEM reference (default neo-hookean)")
@@ -52,6 +54,10 @@ void declare_fit(CLI::App& app, program::FitOptions& options) {
     auto* cell_size = add_optional(app, "--cell-size", options.cell_size, "size of the cells, m")->group(mesh);
     add_optional(app, "--nodes", options.nodes, "number of nodes to aim at (default 1000)")
         ->excludes(cell_size)
+        ->group(mesh);
+    add_optional(app, "--reference-nodes", options.reference_nodes,
+                 "nodes of a finer mesh for the FEM, more than --nodes; its surface is carried by the network (default: the "
+                 "network's own mesh)")
         ->group(mesh);
     app.add_option("--fill-holes", options.fill_holes, "close holes of the surface of at most this many edges (default none)")
         ->group(mesh);
@@ -94,7 +100,9 @@ void declare_fit(CLI::App& app, program::FitOptions& options) {
 
 void declare_simulate(CLI::App& app, program::SimulateOptions& options) {
     app.add_option("MODEL", options.model, "a model.json")->required();
-    app.add_option("--out", options.out, "folder for motion.h5 and motion.xdmf")->required();
+    app.add_option("--out", options.out,
+                   "folder for motion.h5 and motion.xdmf; surface.h5 and surface.xdmf where the model has a surface")
+        ->required();
     app.add_option_function<std::vector<double>>(
            "--gravity", [&options](const std::vector<double>& g) { options.gravity = g; },
            "acceleration of the whole body, m/s^2, one number per dimension (default 0,-9.81[,0])")

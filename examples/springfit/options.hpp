@@ -8,6 +8,8 @@
 
 namespace program {
 
+constexpr int default_nodes = 1000; ///< of a body that is meshed
+
 /// What `springfit fit` was asked for. Values left out are chosen from the body.
 struct FitOptions {
     std::string input;
@@ -24,6 +26,7 @@ struct FitOptions {
 
     std::optional<double> cell_size; ///< m
     std::optional<int> nodes;
+    std::optional<int> reference_nodes; ///< of a finer mesh for the FEM; else it is on the network's mesh
     int fill_holes = 0; ///< holes of at most this many edges are closed
     std::vector<std::string> clamps;
 

@@ -54,16 +54,27 @@ int simulate_model(const io::Model<Dim, double>& model, const SimulateOptions& o
                               text(to_string(recording.status), " after ", recording.motion.n_frames(), " frames"));
     }
     io::OutputGroup outputs;
-    io::MotionWriter<Dim, double> writer(outputs, folder.path() / "motion.h5", recording.motion,
-                                         {.kind = {}, .cells = {}, .springs = model.network.springs});
-    for (Index t = 0; t < recording.motion.n_frames(); ++t) {
-        const auto frame = static_cast<std::size_t>(t);
-        writer.append({.time = recording.motion.times[frame], .fitted_positions = &recording.motion.positions[frame]});
+    const auto write = [&](const char* name, const Motion<Dim, double>& body, const io::MotionTopology& topology,
+                           const std::vector<Points<Dim, double>>& positions) {
+        io::MotionWriter<Dim, double> writer(outputs, folder.path() / name, body, topology);
+        for (std::size_t t = 0; t < positions.size(); ++t) {
+            writer.append({.time = recording.motion.times[t], .fitted_positions = &positions[t]});
+        }
+        writer.finish();
+    };
+    write("motion.h5", recording.motion, {.kind = {}, .cells = {}, .springs = model.network.springs},
+          recording.motion.positions);
+    if (model.surface) {
+        Motion<Dim, double> body;
+        body.name = recording.motion.name;
+        body.rest_positions = model.surface->rest_positions;
+        body.clamped = targets_of(model.surface->from_nodes, recording.motion.clamped);
+        write("surface.h5", body, io::motion_topology(*model.surface), carry(*model.surface, recording.motion));
     }
-    writer.finish();
     outputs.commit();
-    std::printf("wrote %lld frames of motion.h5 and motion.xdmf to %s\n",
-                static_cast<long long>(recording.motion.n_frames()), folder.path().string().c_str());
+    std::printf("wrote %lld frames of motion.h5%s and the .xdmf beside to %s\n",
+                static_cast<long long>(recording.motion.n_frames()), model.surface ? ", surface.h5" : "",
+                folder.path().string().c_str());
     return recording.status == Status::interrupted ? exit_interrupted : 0;
 }
 

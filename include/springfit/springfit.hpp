@@ -19,6 +19,7 @@
 #include <springfit/motion/record_static.hpp>
 #include <springfit/motion/replay.hpp>
 #include <springfit/motion/strain.hpp>
+#include <springfit/motion/surface.hpp>
 #include <springfit/motion/transfer.hpp>
 #include <springfit/motion/user_reference.hpp>
 #include <springfit/network/damping.hpp>

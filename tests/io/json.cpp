@@ -66,6 +66,27 @@ Model<Dim, Scalar> example_with_cells() {
     return model;
 }
 
+/// The example with two cells of a surface, of three points that its nodes carry.
+template <int Dim, class Scalar>
+Model<Dim, Scalar> example_with_surface() {
+    auto model = example<Dim, Scalar>();
+    auto& surface = model.surface.emplace();
+    surface.rest_positions = model.network.rest_positions.leftCols(3) * (Scalar(1) / 7);
+    surface.cells.resize(Dim, 2);
+    for (int a = 0; a < Dim; ++a) {
+        surface.cells.col(0)(a) = a;
+        surface.cells.col(1)(a) = 2 - a;
+    }
+    surface.from_nodes.weights.resize(4, 3);
+    surface.from_nodes.weights.insert(2, 0) = 1;
+    surface.from_nodes.weights.insert(0, 1) = Scalar(1) / 3;
+    surface.from_nodes.weights.insert(3, 1) = Scalar(2) / 3;
+    surface.from_nodes.weights.insert(0, 2) = Scalar(-0.1);
+    surface.from_nodes.weights.insert(1, 2) = Scalar(1.1);
+    surface.from_nodes.weights.makeCompressed();
+    return model;
+}
+
 /// The message with which a model is refused after `change`.
 template <class Change>
 std::string refusal(const Change& change, const Model<2, double>& model = example<2, double>()) {
@@ -112,6 +133,60 @@ TEST_CASE_TEMPLATE("cells read back bit for bit, and a model without them has no
     const auto plain = model_from_json<dim, Scalar>(without, "model.json");
     CHECK(plain.network.n_cells() == 0);
     validate(plain.network);
+}
+
+TEST_CASE_TEMPLATE("a surface reads back bit for bit, and a model without one has none", T, SPRINGFIT_TEST_SPACES) {
+    constexpr int dim = T::dimension;
+    using Scalar = typename T::Scalar;
+    const auto model = example_with_surface<dim, Scalar>();
+    const auto read = model_from_json<dim, Scalar>(Json::parse(model_text(model)), "model.json");
+    REQUIRE(read.surface.has_value());
+    CHECK(read.surface->rest_positions == model.surface->rest_positions);
+    CHECK(read.surface->cells == model.surface->cells);
+    CHECK(DenseMatrix<Scalar>(read.surface->from_nodes.weights) ==
+          DenseMatrix<Scalar>(model.surface->from_nodes.weights));
+    CHECK(model_text(read) == model_text(model));
+    CHECK(carry(*read.surface, read.network.rest_positions, read.network.rest_positions) ==
+          model.surface->rest_positions);
+
+    const Json without = Json::parse(model_text(example<dim, Scalar>()));
+    CHECK_FALSE(without.contains("surface"));
+    CHECK_FALSE(model_from_json<dim, Scalar>(without, "model.json").surface.has_value());
+
+    auto broken = model;
+    broken.surface->from_nodes.weights.coeffRef(0, 1) = 1;
+    CHECK_THROWS_AS((void)model_text(broken), InvalidArgument);
+}
+
+TEST_CASE("what is missing or wrong in the surface of a model is named by its JSON pointer") {
+    const auto model = example_with_surface<2, double>();
+    const Json json = Json::parse(model_text(model));
+    CHECK(json["surface"]["nodes"] == Json{{2}, {0, 3}, {0, 1}});
+    CHECK(json["surface"]["cells"] == Json{{0, 1}, {2, 1}});
+    for (const char* key : {"rest_position", "cells", "nodes", "weights"}) {
+        CHECK(refusal([&](Json& j) { j["surface"].erase(key); }, model) ==
+              std::string("model.json: /surface/") + key + ": is missing");
+    }
+    const auto replaced = [&](const char* pointer, const Json& value) {
+        return refusal([&](Json& j) { j[Json::json_pointer(pointer)] = value; }, model);
+    };
+    CHECK(replaced("/surface", 1) == "model.json: /surface: expected an object, found 1");
+    CHECK(replaced("/surface/rest_position/2", {1}) ==
+          "model.json: /surface/rest_position/2: expected an array of 2, the coordinates, found an array of 1");
+    CHECK(replaced("/surface/cells/1/0", 3) ==
+          "model.json: /surface/cells/1/0: expected a whole number in [0, 3), found 3");
+    CHECK(replaced("/surface/cells/1", {0, 1, 2}) ==
+          "model.json: /surface/cells/1: expected an array of 2, the corners of the cell, found an array of 3");
+    CHECK(replaced("/surface/nodes/1/0", 4) ==
+          "model.json: /surface/nodes/1/0: expected a whole number in [0, 4), found 4");
+    CHECK(replaced("/surface/nodes", {{2}}) ==
+          "model.json: /surface/nodes: expected an array of 3, the nodes that carry each point, found an array of 1");
+    CHECK(replaced("/surface/weights/1", {1}) ==
+          "model.json: /surface/weights/1: expected an array of 2, one weight per node, found an array of 1");
+    CHECK(replaced("/surface/weights/0/0", 0.5) ==
+          "model.json: /surface/weights/0: expected weights that sum to 1, found a sum of 0.5");
+    CHECK(replaced("/surface/weights/0/0", nullptr) ==
+          "model.json: /surface/weights/0/0: expected a number, found null");
 }
 
 TEST_CASE("random doubles read back bit for bit") {

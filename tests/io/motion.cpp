@@ -159,6 +159,29 @@ TEST_CASE("cells keep their kind where the number of corners does not tell it") 
     CHECK(read_motion<3, double>(folder / "motion.h5").motion.n_nodes() == mesh.n_nodes());
 }
 
+TEST_CASE_TEMPLATE("the surface that a network carries is a motion of triangles, in the plane of segments", T,
+                   SPRINGFIT_TEST_SPACES) {
+    using Scalar = typename T::Scalar;
+    constexpr int Dim = T::dimension;
+    const ScratchFolder folder;
+    const auto mesh = grid<Dim, Scalar>();
+    Interpolation<Scalar> itself;
+    itself.weights.resize(mesh.n_nodes(), mesh.n_nodes());
+    itself.weights.setIdentity();
+    const auto surface = boundary_surface(mesh, itself);
+    const auto motion = analytic_motion(surface.rest_positions, 3);
+    write_to(folder, motion, motion_topology(surface));
+    const auto read = read_motion<Dim, Scalar>(folder / "motion.xdmf");
+    CHECK(read.motion.rest_positions == surface.rest_positions);
+    CHECK(read.topology.kind.has_value() == (Dim == 3));
+    if constexpr (Dim == 3) {
+        CHECK(read.topology.kind == CellKind::triangle);
+        CHECK(read.topology.cells == surface.cells);
+    } else {
+        CHECK(read.topology.springs == surface.cells);
+    }
+}
+
 TEST_CASE("a file of another program needs points, time and displacement only") {
     const ScratchFolder folder;
     const std::vector<double> points{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};

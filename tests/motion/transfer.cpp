@@ -66,7 +66,7 @@ auto moment(const Points<Dim, Scalar>& positions, const Points<Dim, Scalar>& for
     for (Index i = 1; i < forces.cols(); ++i) {
         sum += cross<Scalar>(Vector<Dim, Scalar>(positions.col(i)), Vector<Dim, Scalar>(forces.col(i)));
     }
-    return Values<Scalar>(Eigen::Matrix<Scalar, Dim == 2 ? 1 : 3, 1>(sum));
+    return Values<Scalar>(Eigen::Matrix < Scalar, Dim == 2 ? 1 : 3, 1 > (sum));
 }
 
 /// A fine grid of five boxes along each axis beside a coarse one of two: no fine plane is a coarse one.
@@ -154,7 +154,52 @@ TEST_CASE("a coarse node is clamped where all that it is read from is") {
         }
     }
     CHECK(coarse.clamped == expected);
+    CHECK(targets_of(pair.at_coarse, motion.clamped) == expected);
+    CHECK(targets_of(pair.at_coarse, {}).empty());
+    CHECK_THROWS_AS((void)targets_of(pair.at_coarse, {216}), InvalidArgument);
     CHECK(coarse.n_frames() == 0);
+}
+
+TEST_CASE_TEMPLATE("a coarse node that is half held is clamped on request, and moves as what holds it", T,
+                   SPRINGFIT_TEST_SPACES) {
+    constexpr int dim = T::dimension;
+    using Scalar = typename T::Scalar;
+    const Pair<dim, Scalar> pair;
+    Motion<dim, Scalar> motion;
+    motion.rest_positions = pair.fine;
+    for (Index i = 0; i < pair.fine.cols(); ++i) {
+        if (pair.fine(0, i) < Scalar(0.5)) { // the coarse plane x = 1/2 lies midway between the fine 2/5 and 3/5
+            motion.clamped.push_back(static_cast<int>(i));
+        }
+    }
+    motion.times = {0};
+    motion.positions = {pair.fine};
+    motion.velocities = {Points<dim, Scalar>::Zero(dim, pair.fine.cols())};
+    for (Index i = 0; i < pair.fine.cols(); ++i) {
+        const bool held = pair.fine(0, i) < Scalar(0.5);
+        motion.positions[0](1, i) += held ? Scalar(0.25) : Scalar(-3);
+        motion.velocities[0](0, i) = held ? Scalar(2) : Scalar(7);
+    }
+    motion.accelerations = motion.velocities;
+    motion.external_forces = motion.velocities;
+    const auto strict = transfer(motion, pair.at_coarse, pair.at_fine, pair.coarse);
+    const auto half = transfer(motion, pair.at_coarse, pair.at_fine, pair.coarse, Scalar(0.5));
+    CHECK(strict.clamped.size() * 2 == half.clamped.size());
+    CHECK(transfer(motion, pair.at_coarse, pair.at_fine, pair.coarse, Scalar(0.6)).clamped == strict.clamped);
+    for (Index c = 0; c < pair.coarse.cols(); ++c) {
+        const bool held = std::binary_search(half.clamped.begin(), half.clamped.end(), static_cast<int>(c));
+        CHECK(held == (pair.coarse(0, c) < Scalar(0.75)));
+        if (held) {
+            CHECK(test::relative(half.positions[0](1, c), pair.coarse(1, c) + Scalar(0.25), Scalar(1)) <
+                  rounding<Scalar>());
+            CHECK(test::relative(half.velocities[0](0, c), Scalar(2), Scalar(2)) < rounding<Scalar>());
+        } else {
+            CHECK(half.positions[0].col(c) == strict.positions[0].col(c));
+        }
+    }
+    CHECK((half.external_forces[0] - strict.external_forces[0]).norm() == 0);
+    CHECK_THROWS_AS((void)transfer(motion, pair.at_coarse, pair.at_fine, pair.coarse, Scalar(0)), InvalidArgument);
+    CHECK_THROWS_AS((void)transfer(motion, pair.at_coarse, pair.at_fine, pair.coarse, Scalar(1.5)), InvalidArgument);
 }
 
 TEST_CASE("a quadratic mesh and its corners read each other's positions") {

@@ -88,6 +88,57 @@ for integrator in ("explicit", "implicit"):
         "--out", stepped)
     assert check_motion(stepped, report["nodes"], report["springs"], 3, fitted_only=True) == 11
 
+# A network that is coarser than its reference: masses are handed over, and the fine surface is carried.
+def check_surface(out, model, fitted_only=False):
+    """surface.h5 agrees with motion.h5 by the weights of model.json."""
+    surface, dimension = model["surface"], model["dimension"]
+    with h5py.File(out / "motion.h5") as file:
+        moved = file["/fitted/displacement"][:]
+        times = file["/time"][:]
+    points = numpy.array(surface["rest_position"])
+    assert points.shape == (len(surface["nodes"]), dimension) and len(surface["weights"]) == len(points)
+    with h5py.File(out / "surface.h5") as file:
+        assert numpy.array_equal(file["/mesh/points"][:], points) and numpy.array_equal(file["/time"][:], times)
+        cells = file["/mesh/cells" if dimension == 3 else "/springs"][:]
+        assert numpy.array_equal(cells, numpy.array(surface["cells"])) and cells.shape[1] == dimension
+        carried = file["/fitted/displacement"][:]
+        reference = None if fitted_only else file["/reference/displacement"][:]
+    assert len(list(xml.etree.ElementTree.parse(out / "surface.xdmf").getroot().iter("Time"))) >= len(times)
+    for p, (nodes, weights) in enumerate(zip(surface["nodes"], surface["weights"])):
+        assert abs(sum(weights) - 1) < 1e-12
+        expected = numpy.einsum("w,twd->td", numpy.array(weights), moved[:, nodes])
+        assert numpy.max(numpy.abs(carried[:, p] - expected)) <= 1e-12 * numpy.max(numpy.abs(moved)), p
+    edges = {tuple(sorted((c[a], c[b]))) for c in cells.tolist() for a in range(dimension) for b in range(a)}
+    if dimension == 3:
+        assert len(points) - len(edges) + len(cells) == 2  # a closed surface without handles
+    else:
+        assert len(points) == len(cells)  # one closed outline
+    return carried, reference
+
+
+(folder / "sheet.wkt").write_text("POLYGON((0 0, 3 0, 3 1, 0 1, 0 0))\n")
+for name, dimension, total, nodes in (("cube.off", 3, 1000, 40), ("sheet.wkt", 2, 3000, 40)):
+    out = folder / ("coarse-" + name)
+    run("fit", folder / name, "--young", 1e4, "--poisson", 0.3, "--density", 1000, "--nodes", nodes,
+        "--reference-nodes", 6 * nodes, "--training-cases", 1, "--held-out-cases", 1, "--static-cases", 6, "--strain", 0.02,
+        "--frames", 10, "--clamp", "x-min:0.1", "--method", "trajectory", "--out", out)
+    assert sorted(p.name for p in out.iterdir()) == ["model.json", "motion.h5", "motion.xdmf", "report.json",
+                                                     "surface.h5", "surface.xdmf"]
+    model = json.load(open(out / "model.json"))
+    report = json.load(open(out / "report.json"))
+    check_model(model, report["nodes"], report["springs"], dimension)
+    check_motion(out, report["nodes"], report["springs"], dimension)
+    assert abs(sum(model["nodes"]["mass"]) / total - 1) < 1e-9
+    at_fine = report["detail"]["reference_nodes"]
+    assert report["nodes"] < 2 * nodes < 4 * nodes < at_fine["nodes"]
+    assert 0 < at_fine["error_of_carrying"] < at_fine["error"] < 1, at_fine
+    assert set(at_fine["cases"]) == set(report["detail"]["reference"]["held_out_cases"])
+    carried, reference = check_surface(out, model)
+    assert numpy.linalg.norm(carried - reference) < numpy.linalg.norm(reference)
+    stepped = folder / ("coarse-stepped-" + name)
+    run("simulate", out / "model.json", "--duration", 0.05, "--frames", 4, "--out", stepped)
+    check_surface(stepped, model, fitted_only=True)
+
 # A motion that another program recorded, of a spring network: its springs are found again.
 points, triangles = bodies.strip_of_squares(6)
 edges = sorted({tuple(sorted((t[a], t[(a + 1) % 3]))) for t in triangles for a in range(3)})

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Every wrong input: exit code 2, one error line that names the thing, and no file left behind."""
 
+import json
 import os
 import pathlib
 import resource
@@ -71,6 +72,13 @@ refused("NaN vertex", ["fit", folder / "nan.off", *MATERIAL], ["nan.off"])
 bodies.write_gmsh_tets(folder / "inverted.msh", [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1)],
                        [(0, 1, 2, 3), (1, 3, 2, 4)])
 refused("inverted element", ["fit", folder / "inverted.msh", *MATERIAL], ["cell 1"])
+broken = {"format": "springfit-model", "version": 1, "dimension": 2, "units": "SI", "damping_law": "axial",
+          "nodes": {"rest_position": [[0, 0], [1, 0]], "mass": [1, 1], "fixed": [0]},
+          "springs": {"nodes": [[0, 1]], "stiffness": [1], "rest_length": [1], "damping": [0]},
+          "surface": {"rest_position": [[0, 1], [1, 1]], "cells": [[0, 1]], "nodes": [[0], [2]], "weights": [[1], [1]]},
+          "stable_time_step": 0.1, "provenance": {}}
+(folder / "surface.json").write_text(json.dumps(broken))
+refused("surface that names no node", ["simulate", folder / "surface.json"], ["surface.json", "/surface/nodes/1/0"])
 refused("missing model", ["simulate", folder / "none.json"], ["none.json"])
 (folder / "broken.json").write_text('{"format": "springfit-model", "version": 1, "dimension": 3')
 refused("broken model", ["simulate", folder / "broken.json"], ["broken.json"])
@@ -92,6 +100,20 @@ refused("missing option", ["fit", cube, "--young", "1e4", "--poisson", "0.3"], [
 refused("element of other cells", ["fit", cube, *MATERIAL, *QUICK, "--element", "quad4"], ["--element", "quad4"])
 refused("unknown clamp", ["fit", cube, *MATERIAL, *QUICK, "--clamp", "left"], ["--clamp", "left"])
 refused("two sizes", ["fit", cube, *MATERIAL, "--nodes", "40", "--cell-size", "0.3"], ["--nodes", "--cell-size"])
+refused("reference no finer than the network", ["fit", cube, *MATERIAL, "--nodes", "40", "--reference-nodes", "40"],
+        ["--reference-nodes", "more than the 40"])
+refused("reference coarser than the nodes by default", ["fit", cube, *MATERIAL, "--reference-nodes", "900"],
+        ["--reference-nodes", "more than the 1000"])
+refused("reference coarser than the cells", ["fit", cube, *MATERIAL, "--cell-size", "0.4", "--reference-nodes", "5"],
+        ["--reference-nodes", "nodes of the network", "5"])
+bodies.write_gmsh_tets(folder / "one.msh", [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], [(0, 1, 2, 3)])
+refused("finer reference for a mesh", ["fit", folder / "one.msh", *MATERIAL, "--reference-nodes", "2000"],
+        ["--reference-nodes", "a surface or an outline", "one.msh"])
+bodies.write_off(folder / "diamond.off", [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)],
+                 [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)])
+refused("clamp that does not hold the network",
+        ["fit", folder / "diamond.off", *MATERIAL, "--nodes", "40", "--reference-nodes", "300"],
+        ["--clamp", "hold the network", "too few"])
 refused("thickness of a solid", ["fit", cube, *MATERIAL, *QUICK, "--thickness", "0.1"], ["--thickness"])
 
 # Output
@@ -119,6 +141,11 @@ displacement[3, 2, 1] = numpy.nan
 bodies.write_motion(folder / "nan.h5", points, triangles, times, displacement)
 refused("NaN in a motion", ["fit", folder / "nan.h5", *MATERIAL], ["nan.h5", "/reference/displacement"])
 refused("meshing option for a motion", ["fit", folder / "strip.h5", *MATERIAL, "--nodes", "100"], ["--nodes"])
+refused("finer reference for a motion", ["fit", folder / "strip.h5", *MATERIAL, "--reference-nodes", "2000"],
+        ["--reference-nodes", "recorded motion"])
+refused("finer reference beside a recorded one",
+        ["fit", cube, *MATERIAL, "--reference", folder / "strip.h5", "--nodes", "40", "--reference-nodes", "200"],
+        ["--reference-nodes", "recorded motion"])
 refused("FEM option for a motion", ["fit", folder / "strip.h5", *MATERIAL, "--element", "tri6"], ["--element"])
 
 sys.exit(1 if failures else 0)

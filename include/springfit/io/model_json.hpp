@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+
 #include <springfit/io/json.hpp>
+#include <springfit/motion/surface.hpp>
 #include <springfit/network/spring_network.hpp>
 
 namespace springfit::io {
@@ -18,6 +21,7 @@ struct Model {
     Values<Scalar> data_share{};
     std::vector<int> fixed;           ///< nodes that were clamped, ascending, each once
     Scalar stable_time_step = 0;      ///< the largest step that explicit integration is sure to stand, s, > 0
+    std::optional<CarriedSurface<Dim, Scalar>> surface{}; ///< finer than the network, for display
     Json provenance = Json::object(); ///< how the model came about: program version, method, material, ...
 };
 

@@ -8,6 +8,7 @@
 #include <springfit/io/hdf5.hpp>
 #include <springfit/mesh/mesh.hpp>
 #include <springfit/motion/motion.hpp>
+#include <springfit/motion/surface.hpp>
 
 namespace springfit::io {
 
@@ -22,6 +23,16 @@ struct MotionTopology {
 template <int Dim, std::floating_point Scalar, CellType Cell>
 [[nodiscard]] MotionTopology motion_topology(const Mesh<Dim, Scalar, Cell>& mesh, const NodePairs& springs) {
     return {cell_kind<LinearCell<Cell>>(), mesh.cells.template topRows<Cell::n_corners>(), springs};
+}
+
+/// The triangles of a carried surface; in the plane its segments, in the place of springs.
+template <int Dim, std::floating_point Scalar>
+[[nodiscard]] MotionTopology motion_topology(const CarriedSurface<Dim, Scalar>& surface) {
+    if constexpr (Dim == 2) {
+        return {.kind = {}, .cells = {}, .springs = surface.cells};
+    } else {
+        return {.kind = CellKind::triangle, .cells = surface.cells, .springs = {}};
+    }
 }
 
 /// One frame to write. What is left null has no array in the file; all frames of a file give the same arrays.

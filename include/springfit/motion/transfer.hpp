@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include <springfit/mesh/corner_mesh.hpp>
 #include <springfit/motion/motion.hpp>
@@ -112,19 +114,72 @@ template <int Dim, std::floating_point Scalar, CellType Cell>
     return result;
 }
 
+/// The targets whose weights are, to `share` of them, those of these sources; ascending, each once. The weights count
+/// by their size, and with a share of 1 all of them to rounding.
+///
+/// Throws InvalidArgument for a source out of range and a share outside of (0, 1]. O(weights).
+template <std::floating_point Scalar>
+[[nodiscard]] std::vector<int> targets_of(const Interpolation<Scalar>& interpolation, const std::vector<int>& sources,
+                                          std::type_identity_t<Scalar> share = 1) {
+    require(share > 0 && share <= 1, "share", "a part in (0, 1]", share);
+    std::vector<bool> chosen(static_cast<std::size_t>(interpolation.n_sources()), false);
+    for (int node : sources) {
+        require(node >= 0 && node < interpolation.n_sources(), "sources",
+                text("node numbers in [0, ", interpolation.n_sources(), ")"), node);
+        chosen[static_cast<std::size_t>(node)] = true;
+    }
+    const Scalar rounding = std::sqrt(std::numeric_limits<Scalar>::epsilon());
+    std::vector<int> targets;
+    for (Index c = 0; c < interpolation.n_targets(); ++c) {
+        Scalar all = 0;
+        Scalar of_chosen = 0;
+        for (typename SparseMatrix<Scalar>::InnerIterator weight(interpolation.weights, c); weight; ++weight) {
+            const Scalar size = std::abs(weight.value());
+            all += size;
+            of_chosen += chosen[static_cast<std::size_t>(weight.row())] ? size : Scalar(0);
+        }
+        if (of_chosen > 0 && of_chosen >= (share - rounding) * all) {
+            targets.push_back(static_cast<int>(c));
+        }
+    }
+    return targets;
+}
+
+namespace detail {
+
+/// Lets these targets be read from these sources alone.
+template <std::floating_point Scalar>
+void restrict_columns(SparseMatrix<Scalar>& weights, const std::vector<int>& targets, const std::vector<int>& sources) {
+    for (int target : targets) {
+        const auto kept = [&](Index row) {
+            return std::find(sources.begin(), sources.end(), static_cast<int>(row)) != sources.end();
+        };
+        Scalar sum = 0;
+        for (typename SparseMatrix<Scalar>::InnerIterator weight(weights, target); weight; ++weight) {
+            sum += kept(weight.row()) ? weight.value() : Scalar(0);
+        }
+        for (typename SparseMatrix<Scalar>::InnerIterator weight(weights, target); weight; ++weight) {
+            weight.valueRef() = kept(weight.row()) ? weight.value() / sum : Scalar(0);
+        }
+    }
+}
+
+} // namespace detail
+
 /// The motion of a fine mesh carried to the nodes of a coarser network.
 ///
-/// Kinematics are read off at the coarse nodes (`at_coarse`: fine nodes to coarse nodes): a coarse node moves from its rest
-/// position by the interpolated displacement, so an affine motion comes out exactly. External forces are handed over by the
-/// adjoint of the other interpolation (`at_fine`: coarse nodes to fine nodes): the total force is kept exactly, and the
-/// moment as far as `at_fine` reproduces the fine positions. A coarse node is clamped where every fine node that it is
-/// read from is.
+/// Kinematics are read off at the coarse nodes (`at_coarse`: fine nodes to coarse nodes): a coarse node moves from its
+/// rest position by the interpolated displacement, so an affine motion comes out exactly. External forces are handed
+/// over by the adjoint of the other interpolation (`at_fine`: coarse nodes to fine nodes): the total force is kept
+/// exactly, and the moment as far as `at_fine` reproduces the fine positions. A coarse node is clamped where fine nodes
+/// that are make up `clamped_share` of what it is read from (`targets_of`), and then moves as those do: with 1, where
+/// all of them are; with 1/2 the clamped region keeps its size, even where it is thinner than the cells.
 ///
 /// Throws InvalidArgument for sizes that do not fit and for weights that do not sum to 1. O(frames * weights).
 template <int Dim, std::floating_point Scalar>
-[[nodiscard]] Motion<Dim, Scalar> transfer(const Motion<Dim, Scalar>& fine, const Interpolation<Scalar>& at_coarse,
-                                           const Interpolation<Scalar>& at_fine,
-                                           const Points<Dim, Scalar>& coarse_rest_positions) {
+[[nodiscard]] Motion<Dim, Scalar>
+transfer(const Motion<Dim, Scalar>& fine, const Interpolation<Scalar>& at_coarse, const Interpolation<Scalar>& at_fine,
+         const Points<Dim, Scalar>& coarse_rest_positions, std::type_identity_t<Scalar> clamped_share = 1) {
     const Index n_fine = fine.n_nodes();
     const Index n_coarse = coarse_rest_positions.cols();
     require(at_coarse.n_sources() == n_fine && at_coarse.n_targets() == n_coarse, "at_coarse",
@@ -141,25 +196,14 @@ template <int Dim, std::floating_point Scalar>
     coarse.name = fine.name;
     coarse.rest_positions = coarse_rest_positions;
     coarse.times = fine.times;
-    std::vector<bool> held(static_cast<std::size_t>(n_fine), false);
-    for (int node : fine.clamped) {
-        held[static_cast<std::size_t>(node)] = true;
-    }
-    const Scalar rounding = std::sqrt(std::numeric_limits<Scalar>::epsilon());
-    for (Index c = 0; c < n_coarse; ++c) {
-        bool all_held = true;
-        for (typename SparseMatrix<Scalar>::InnerIterator weight(at_coarse.weights, c); weight; ++weight) {
-            all_held = all_held && (std::abs(weight.value()) <= rounding || held[static_cast<std::size_t>(weight.row())]);
-        }
-        if (all_held) {
-            coarse.clamped.push_back(static_cast<int>(c));
-        }
-    }
+    coarse.clamped = targets_of(at_coarse, fine.clamped, clamped_share);
+    Interpolation<Scalar> reading = at_coarse;
+    detail::restrict_columns(reading.weights, coarse.clamped, fine.clamped);
     for (std::size_t t = 0; t < fine.times.size(); ++t) {
         const Points<Dim, Scalar> displacement = fine.positions[t] - fine.rest_positions;
-        coarse.positions.push_back(coarse_rest_positions + interpolate(at_coarse, displacement));
-        coarse.velocities.push_back(interpolate(at_coarse, fine.velocities[t]));
-        coarse.accelerations.push_back(interpolate(at_coarse, fine.accelerations[t]));
+        coarse.positions.push_back(coarse_rest_positions + interpolate(reading, displacement));
+        coarse.velocities.push_back(interpolate(reading, fine.velocities[t]));
+        coarse.accelerations.push_back(interpolate(reading, fine.accelerations[t]));
         coarse.external_forces.push_back(restrict_forces(at_fine, fine.external_forces[t]));
     }
     return coarse;

@@ -80,6 +80,20 @@ template <std::floating_point Scalar>
     return values;
 }
 
+template <int Dim, std::floating_point Scalar>
+[[nodiscard]] Points<Dim, Scalar> read_positions(const JsonPlace& place, std::string_view owner) {
+    const auto n = static_cast<Index>(place.array_size(text("an array, one position per ", owner)));
+    Points<Dim, Scalar> positions(Dim, n);
+    for (Index i = 0; i < n; ++i) {
+        const JsonPlace position = place.element(static_cast<std::size_t>(i));
+        (void)position.array_size(text("an array of ", Dim, ", the coordinates"), Dim);
+        for (int d = 0; d < Dim; ++d) {
+            positions(d, i) = read_number<Scalar>(position.element(static_cast<std::size_t>(d)), Range::any);
+        }
+    }
+    return positions;
+}
+
 inline void check_model_header(const Json& json, const std::string& file) {
     const JsonPlace root(json, file);
     const auto expect_text = [&](std::string_view key, std::string_view expected) {
@@ -100,17 +114,8 @@ inline void check_model_header(const Json& json, const std::string& file) {
 template <int Dim, std::floating_point Scalar>
 [[nodiscard]] SpringNetwork<Dim, Scalar> read_network(const JsonPlace& nodes, const JsonPlace& springs) {
     SpringNetwork<Dim, Scalar> network;
-    const JsonPlace positions = nodes.member("rest_position");
-    const auto n_nodes = static_cast<Index>(positions.array_size("an array, one position per node"));
-    network.rest_positions.resize(Dim, n_nodes);
-    for (Index i = 0; i < n_nodes; ++i) {
-        const JsonPlace position = positions.element(static_cast<std::size_t>(i));
-        (void)position.array_size(text("an array of ", Dim, ", the coordinates"), Dim);
-        for (int d = 0; d < Dim; ++d) {
-            network.rest_positions(d, i) =
-                read_number<Scalar>(position.element(static_cast<std::size_t>(d)), Range::any);
-        }
-    }
+    network.rest_positions = read_positions<Dim, Scalar>(nodes.member("rest_position"), "node");
+    const Index n_nodes = network.n_nodes();
     network.mass = read_values<Scalar>(nodes.member("mass"), n_nodes, "node", Range::positive);
 
     const JsonPlace ends = springs.member("nodes");
@@ -155,6 +160,69 @@ void read_cells(const JsonPlace& cells, SpringNetwork<Dim, Scalar>& network) {
     network.volume_stiffness = read_values<Scalar>(cells.member("stiffness"), n_cells, "cell", Range::any);
 }
 
+/// The surface with the nodes and weights of each of its points.
+template <int Dim, std::floating_point Scalar>
+[[nodiscard]] Json surface_to_json(const CarriedSurface<Dim, Scalar>& surface) {
+    Json json;
+    json["rest_position"] = columns_to_json(surface.rest_positions);
+    json["cells"] = columns_to_json(surface.cells);
+    Json& nodes = json["nodes"] = Json::array();
+    Json& weights = json["weights"] = Json::array();
+    for (Index p = 0; p < surface.n_points(); ++p) {
+        Json point_nodes = Json::array();
+        Json point_weights = Json::array();
+        for (typename SparseMatrix<Scalar>::InnerIterator weight(surface.from_nodes.weights, p); weight; ++weight) {
+            point_nodes.push_back(weight.row());
+            point_weights.push_back(static_cast<double>(weight.value()));
+        }
+        nodes.push_back(std::move(point_nodes));
+        weights.push_back(std::move(point_weights));
+    }
+    return json;
+}
+
+template <int Dim, std::floating_point Scalar>
+[[nodiscard]] CarriedSurface<Dim, Scalar> read_surface(const JsonPlace& place, Index n_nodes) {
+    CarriedSurface<Dim, Scalar> surface;
+    surface.rest_positions = read_positions<Dim, Scalar>(place.member("rest_position"), "point");
+    const Index n_points = surface.n_points();
+
+    const JsonPlace cells = place.member("cells");
+    surface.cells.resize(Dim, static_cast<Index>(cells.array_size("an array, the corners of each cell")));
+    for (Index c = 0; c < surface.n_cells(); ++c) {
+        const JsonPlace cell = cells.element(static_cast<std::size_t>(c));
+        (void)cell.array_size(text("an array of ", Dim, ", the corners of the cell"), Dim);
+        for (int a = 0; a < Dim; ++a) {
+            surface.cells(a, c) = cell.element(static_cast<std::size_t>(a)).index_below(n_points);
+        }
+    }
+
+    const JsonPlace nodes = place.member("nodes");
+    const JsonPlace weights = place.member("weights");
+    (void)nodes.array_size(text("an array of ", n_points, ", the nodes that carry each point"), n_points);
+    (void)weights.array_size(text("an array of ", n_points, ", the weights of each point"), n_points);
+    std::vector<Eigen::Triplet<Scalar>> entries;
+    for (Index p = 0; p < n_points; ++p) {
+        const JsonPlace point_nodes = nodes.element(static_cast<std::size_t>(p));
+        const JsonPlace point_weights = weights.element(static_cast<std::size_t>(p));
+        const std::size_t n_weights = point_nodes.array_size("an array of node numbers");
+        (void)point_weights.array_size(text("an array of ", n_weights, ", one weight per node"),
+                                       static_cast<std::ptrdiff_t>(n_weights));
+        Scalar sum = 0;
+        for (std::size_t w = 0; w < n_weights; ++w) {
+            const auto weight = read_number<Scalar>(point_weights.element(w), Range::any);
+            entries.emplace_back(point_nodes.element(w).index_below(n_nodes), static_cast<int>(p), weight);
+            sum += weight;
+        }
+        if (!(std::abs(sum - 1) <= 1000 * std::numeric_limits<Scalar>::epsilon())) {
+            point_weights.refuse("weights that sum to 1", text("a sum of ", sum));
+        }
+    }
+    surface.from_nodes.weights.resize(n_nodes, n_points);
+    surface.from_nodes.weights.setFromTriplets(entries.begin(), entries.end());
+    return surface;
+}
+
 } // namespace detail
 
 template <int Dim, std::floating_point Scalar>
@@ -195,6 +263,10 @@ std::string model_text(const Model<Dim, Scalar>& model) {
         json["cells"]["rest_volume"] = detail::values_to_json(network.rest_volume);
         json["cells"]["stiffness"] = detail::values_to_json(network.volume_stiffness);
     }
+    if (model.surface) {
+        validate(*model.surface, network.n_nodes());
+        json["surface"] = detail::surface_to_json(*model.surface);
+    }
     json["stable_time_step"] = static_cast<double>(model.stable_time_step);
     json["provenance"] = model.provenance;
     return json_text(json);
@@ -224,6 +296,9 @@ Model<Dim, Scalar> model_from_json(const Json& json, const std::string& file) {
     }
     if (json.contains("cells")) {
         detail::read_cells<Dim, Scalar>(root.member("cells"), model.network);
+    }
+    if (json.contains("surface")) {
+        model.surface = detail::read_surface<Dim, Scalar>(root.member("surface"), model.network.n_nodes());
     }
     const JsonPlace fixed = nodes.member("fixed");
     for (std::size_t a = 0; a < fixed.array_size("an array of node numbers"); ++a) {
