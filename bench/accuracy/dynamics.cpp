@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <numbers>
 
+#include <springfit/score/simulate.hpp>
+
 #include "solid.hpp"
 #include "svg.hpp"
 
@@ -55,21 +57,30 @@ std::vector<Network> networks(const TetMesh& mesh, const ReferenceKind& referenc
     return all;
 }
 
-/// How far one free node of the reference, the network of a method and a closed form are from rest over time.
-svg::Chart chart_of(const Motion<3, double>& reference, double period) {
-    svg::Chart chart{.title = text("Released from '", reference.name.substr(10), "': the node that moves most"),
-                     .x_label = "time / slowest period",
-                     .y_label = "displacement, m"};
-    svg::Series series{"reference", {}, {}};
+/// The way of the node that moves most after a release, in the reference and in some networks.
+svg::Chart chart_of(const Scenario<3, double>& release, const Motion<3, double>& reference,
+                    const std::vector<Network>& networks) {
+    const Points<3, double> start = reference.positions[0] - reference.rest_positions;
     Index node = 0;
-    (reference.positions[0] - reference.rest_positions).colwise().norm().maxCoeff(&node);
     Index axis = 0;
-    (reference.positions[0] - reference.rest_positions).col(node).cwiseAbs().maxCoeff(&axis);
-    for (std::size_t t = 0; t < reference.times.size(); ++t) {
-        series.x.push_back(reference.times[t] / period);
-        series.y.push_back(reference.positions[t](axis, node) - reference.rest_positions(axis, node));
+    (void)start.cwiseAbs().maxCoeff(&axis, &node);
+    svg::Chart chart{.title = "The node that moves most, " + release.name,
+                     .x_label = "time, s",
+                     .y_label = "displacement, m"};
+    const auto add = [&](const std::string& name, const Motion<3, double>& motion) {
+        svg::Series series{name, motion.times, {}};
+        for (const auto& positions : motion.positions) {
+            series.y.push_back(positions(axis, node) - motion.rest_positions(axis, node));
+        }
+        chart.series.push_back(std::move(series));
+    };
+    add("reference", reference);
+    for (const Network& own : networks) {
+        if (own.method == "trajectory" || own.method == "van_gelder") {
+            const SymplecticEulerOptions<double> options{.max_substeps = 100000};
+            add(own.method, simulate(own.network, release, reference.times, until_interrupted(), options).motion);
+        }
     }
-    chart.series = {series};
     return chart;
 }
 
@@ -115,8 +126,8 @@ void study_dynamics(Report& report, const Settings& settings) {
         text("Lowest natural frequency; that of the reference is ", number(omega / (2 * std::numbers::pi)), " Hz."),
         {"method", "Hz", "relative to the reference"}};
     double fitted_frequency = std::numeric_limits<double>::quiet_NaN();
-    for (const auto& [method, is_closed_form, seconds, network] :
-         networks(mesh, reference, statics.training, settings)) {
+    const auto all = networks(mesh, reference, statics.training, settings);
+    for (const auto& [method, is_closed_form, seconds, network] : all) {
         row.springs = static_cast<long>(network.n_springs());
         row.scores.push_back({method, is_closed_form, errors(network, sets, settings), seconds});
         const double own = network_frequency(network, clamped);
@@ -131,7 +142,7 @@ void study_dynamics(Report& report, const Settings& settings) {
     report.at_most("Lowest natural frequency of the fitted network: relative error",
                    std::abs(fitted_frequency / omega - 1), 0.02);
     if (!sets.kinds.motions.empty()) {
-        report.figure("dynamics", svg::lines(chart_of(sets.kinds.motions.front(), period)));
+        report.figure("dynamics", svg::lines(chart_of(sets.kinds.scenarios.front(), sets.kinds.motions.front(), all)));
     }
 }
 
