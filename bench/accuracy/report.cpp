@@ -349,7 +349,7 @@ void Report::write_part(const Part& part) const {
 
 std::string Report::bars() const {
     std::ostringstream page;
-    page << "\n## Bars\n\nWhat the fits are held to; set before they were measured, and not moved since."
+    page << "\n## Bars\n\nWhat the fits are held to: targets, with what was measured, met or not."
          << (m_is_quick ? " They belong to the finer meshes of the full study: the quick one reads them on coarse ones."
                         : "")
          << "\n\n| what | measured | bar | |\n|---|---|---|---|\n";

@@ -31,12 +31,12 @@ void study_surfaces(Report& report, const Settings& settings) {
         return;
     }
     CaseSettings cases;
-    cases.training = settings.quick ? 24 : 45;
+    cases.training = settings.quick ? 24 : 36;
     cases.clamp = 6;
     cases.strain = 0.15;
     Methods methods;
-    methods.fit.max_iterations = settings.quick ? 6 : 12;
-    methods.fit.tolerance = 0.01;
+    methods.fit.max_iterations = settings.quick ? 6 : 10;
+    methods.fit.tolerance = 0.02;
     const ReferenceKind locking{.material = MaterialKind::neo_hookean, .poisson = 0.45};
     ReferenceKind mean = locking;
     mean.mean_dilatation = true;
@@ -46,7 +46,7 @@ void study_surfaces(Report& report, const Settings& settings) {
         if (settings.quick && !is_main) {
             break;
         }
-        const auto mesh = solid_mesh(settings.data / (name + ".off"), settings.quick ? 250 : 500);
+        const auto mesh = solid_mesh(settings.data / (name + ".off"), settings.quick ? 250 : 400);
         if (!mesh) {
             report.note(name + ": left out, no solid mesh.");
             continue;
