@@ -2,7 +2,8 @@
 # All that a new user needs on a bare Debian 12:
 #   sh cmake/quickstart.sh demo    a real solid, from its surface to a calibrated mass-spring model in out/elephant/
 #   sh cmake/quickstart.sh test    build everything and run the tests
-# Both install the Debian packages that are missing; run again, they do only what is left to do.
+#   sh cmake/quickstart.sh study   the accuracy study of methods, meshes and materials, into docs/results/ (45 minutes)
+# All install the Debian packages that are missing; run again, they do only what is left to do.
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -23,16 +24,22 @@ install_missing() {
     $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing >/dev/null
 }
 
-# elephant.off comes with CGAL's own examples; it is taken out of the package without installing it.
-fetch_elephant() {
-    [ -s build/data/elephant.off ] && return 0
+# The surfaces come with CGAL's own examples; they are taken out of the package without installing it.
+fetch_surfaces() {
+    missing=""
+    for surface in "$@"; do
+        [ -s "build/data/$surface.off" ] || missing="$missing $surface"
+    done
+    [ -n "$missing" ] || return 0
     mkdir -p build/data
     (
         cd build/data
         apt-get download -qq libcgal-demo
         dpkg-deb -x libcgal-demo_*.deb package
-        tar -xzOf package/usr/share/doc/libcgal-demo/data.tar.gz data/meshes/elephant.off >elephant.off.part
-        mv elephant.off.part elephant.off
+        for surface in $missing; do
+            tar -xzOf package/usr/share/doc/libcgal-demo/data.tar.gz "data/meshes/$surface.off" >"$surface.off.part"
+            mv "$surface.off.part" "$surface.off"
+        done
         rm -rf package libcgal-demo_*.deb
     )
 }
@@ -42,7 +49,7 @@ demo)
     install_missing $build_packages
     cmake --preset default
     cmake --build build --target springfit
-    fetch_elephant
+    fetch_surfaces elephant
     build/bin/springfit fit build/data/elephant.off --young 5e4 --poisson 0.45 --density 1000 \
         --material neo-hookean --nodes 2000 --out out/elephant
     ;;
@@ -52,8 +59,15 @@ test)
     cmake --build build
     ctest --test-dir build --output-on-failure -j "$(nproc)"
     ;;
+study)
+    install_missing $build_packages $test_packages
+    cmake --preset default
+    cmake --build build --target springfit_study
+    fetch_surfaces elephant fandisk knot1 bear
+    build/bin/springfit_study --data build/data --out docs/results
+    ;;
 *)
-    echo "usage: sh cmake/quickstart.sh demo|test" >&2
+    echo "usage: sh cmake/quickstart.sh demo|test|study" >&2
     exit 2
     ;;
 esac

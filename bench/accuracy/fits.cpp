@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "study.hpp"
+#include "fits.hpp"
 
 #ifdef SPRINGFIT_STUDY_IPOPT
 #include <springfit/ipopt/exact.hpp>
+#include <springfit/ipopt/trajectory.hpp>
 #endif
 #ifdef SPRINGFIT_STUDY_SEARCH
 #include <springfit/search/annealing.hpp>
@@ -11,7 +12,19 @@
 
 namespace study {
 
-using namespace springfit;
+namespace {
+
+[[maybe_unused]] TimedFit timed(const TrajectoryProblem<3>& problem, const SpringNetwork<3, double>& prior,
+                                const TrajectoryReport& report) {
+    stop_if_interrupted();
+    TimedFit fit{report.seconds, report.objective, prior};
+    if (usable(report.status)) {
+        apply(problem, report, fit.network);
+    }
+    return fit;
+}
+
+} // namespace
 
 std::optional<FitReport> exact_fit([[maybe_unused]] const FitProblem& problem) {
 #ifdef SPRINGFIT_STUDY_IPOPT
@@ -21,26 +34,43 @@ std::optional<FitReport> exact_fit([[maybe_unused]] const FitProblem& problem) {
 #endif
 }
 
-std::vector<SearchResult> searches([[maybe_unused]] const TrajectoryProblem<3>& problem,
-                                   [[maybe_unused]] double seconds, [[maybe_unused]] unsigned seed) {
-    std::vector<SearchResult> results;
-#ifdef SPRINGFIT_STUDY_SEARCH
-    const ProgressCallback progress = [](const Progress&) { return !interrupted(); };
-    search::GeneticOptions genetic;
-    genetic.generations = 1000000; // as many as the time allows
-    genetic.seconds = seconds;
-    genetic.seed = seed;
-    genetic.progress = progress;
-    auto found = search::genetic(problem, genetic);
-    results.push_back({"genetic", found.fit.seconds, found.fit.theta});
-    search::AnnealingOptions annealing;
-    annealing.seconds = seconds;
-    annealing.seed = seed;
-    annealing.progress = progress;
-    found = search::annealing(problem, annealing);
-    results.push_back({"annealing", found.fit.seconds, found.fit.theta});
+std::optional<TimedFit> ipopt_fit([[maybe_unused]] const SpringNetwork<3, double>& prior,
+                                  [[maybe_unused]] const std::vector<Motion<3, double>>& training,
+                                  [[maybe_unused]] int max_iterations, [[maybe_unused]] const FitSettings& fit,
+                                  [[maybe_unused]] const Settings& settings) {
+#ifdef SPRINGFIT_STUDY_IPOPT
+    const TrajectoryProblem<3> problem(prior, training, trajectory_options(fit, settings));
+    ipopt::TrajectoryFitOptions options;
+    options.max_iterations = max_iterations;
+    options.progress = until_interrupted();
+    return timed(problem, prior, ipopt::trajectory(problem, options));
+#else
+    return {};
 #endif
-    return results;
+}
+
+std::optional<TimedFit> search_fit([[maybe_unused]] Search search,
+                                   [[maybe_unused]] const SpringNetwork<3, double>& prior,
+                                   [[maybe_unused]] const std::vector<Motion<3, double>>& training,
+                                   [[maybe_unused]] double seconds, [[maybe_unused]] const FitSettings& fit,
+                                   [[maybe_unused]] const Settings& settings) {
+#ifdef SPRINGFIT_STUDY_SEARCH
+    const TrajectoryProblem<3> problem(prior, training, trajectory_options(fit, settings));
+    const auto run = [&](auto options, const auto& engine) {
+        options.seconds = seconds;
+        options.seed = settings.seed;
+        options.progress = until_interrupted();
+        return timed(problem, prior, engine(options).fit);
+    };
+    if (search == Search::genetic) {
+        search::GeneticOptions options;
+        options.generations = 1000000; // as many as the time allows
+        return run(options, [&](const auto& own) { return search::genetic(problem, own); });
+    }
+    return run(search::AnnealingOptions{}, [&](const auto& own) { return search::annealing(problem, own); });
+#else
+    return {};
+#endif
 }
 
 } // namespace study

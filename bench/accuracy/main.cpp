@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <csignal>
 #include <iostream>
 
@@ -18,84 +19,135 @@ void on_interrupt(int signal) {
 }
 
 constexpr const char* usage =
-    "springfit_study [--quick] [--out DIR] [--data DIR] [--seed N] [--only PART]...\n"
+    "springfit_study [--quick] [--large] [--out DIR] [--data DIR] [--seed N] [--only PART]...\n"
     "  Fits every method on every mesh and scores it on unseen motion; writes tables and figures.\n"
-    "  --quick     a part of it\n"
+    "  --quick     a few small rows of each part\n"
+    "  --large     also the fit of 1e5 springs\n"
     "  --out DIR   where to write (docs/results; quick: study-quick)\n"
     "  --data DIR  a folder with elephant.off and other surfaces; without it they are left out\n"
     "  --seed N    of all load cases (1)\n"
-    "  --only PART plane or solids; may be given again\n";
+    "  --only PART plane, solids, surfaces, setups, recovery, dynamics, coarse or time; may be given again\n"
+    "Exit codes: 0 when it ran, whatever the bars; 1 where known springs are not recovered; 2 for wrong arguments;\n"
+    "130 where Ctrl-C ended it early, with all that was done so far in the files.\n";
+
+using Part = void (*)(study::Report&, const study::Settings&);
+
+constexpr std::pair<const char*, Part> parts[] = {
+    {"plane", study::study_plane},   {"solids", study::study_solids},     {"surfaces", study::study_surfaces},
+    {"setups", study::study_setups}, {"recovery", study::study_recovery}, {"dynamics", study::study_dynamics},
+    {"coarse", study::study_coarse}, {"time", study::study_time},
+};
+
+struct Arguments {
+    study::Settings settings;
+    std::string out;
+    std::string command = "springfit_study";
+    std::vector<std::string> only;
+};
+
+/// Prints what is wrong, and the usage.
+int refuse(const std::string& what) {
+    std::cerr << what << "\n" << usage;
+    return 2;
+}
+
+/// The exit code where the program ends here, else -1.
+int read(int argc, char** argv, Arguments& arguments) {
+    for (int a = 1; a < argc; ++a) {
+        const std::string option = argv[a];
+        const std::string value = a + 1 < argc ? argv[a + 1] : "";
+        if (option == "--help" || option == "-h") {
+            std::cout << usage;
+            return 0;
+        }
+        if (option == "--quick" || option == "--large") {
+            (option == "--quick" ? arguments.settings.quick : arguments.settings.large) = true;
+            arguments.command += " " + option;
+            continue;
+        }
+        if (value.empty()) {
+            return refuse("unknown option, or one without its value: " + option);
+        }
+        ++a;
+        if (option == "--out") {
+            arguments.out = value;
+        } else if (option == "--data") {
+            arguments.settings.data = value;
+            arguments.command += " --data DIR";
+        } else if (option == "--seed") {
+            if (value.size() > 9 || value.find_first_not_of("0123456789") != std::string::npos) {
+                return refuse("--seed needs a number, not '" + value + "'");
+            }
+            arguments.settings.seed = static_cast<unsigned>(std::stoul(value));
+            arguments.command += " --seed " + value;
+        } else if (option == "--only") {
+            if (std::none_of(std::begin(parts), std::end(parts), [&](const auto& p) { return p.first == value; })) {
+                return refuse("no part '" + value + "'");
+            }
+            arguments.only.push_back(value);
+            arguments.command += " --only " + value;
+        } else {
+            return refuse("unknown option " + option);
+        }
+    }
+    if (arguments.out.empty()) {
+        arguments.out = arguments.settings.quick ? "study-quick" : "docs/results";
+    }
+    return -1;
+}
+
+/// Runs the parts; true where the user ended it early.
+bool run(study::Report& report, const Arguments& arguments) {
+    const auto& only = arguments.only;
+    try {
+        for (const auto& [name, part] : parts) {
+            if (only.empty() || std::find(only.begin(), only.end(), name) != only.end()) {
+                part(report, arguments.settings);
+                report.end_part();
+            }
+        }
+        return false;
+    } catch (const study::Interrupted&) {
+        return true;
+    }
+}
 
 } // namespace
 
 namespace study {
 
-bool interrupted() { return pressed != 0; }
+bool interrupted() {
+    return pressed != 0;
+}
+
+void stop_if_interrupted() {
+    if (interrupted()) {
+        throw Interrupted();
+    }
+}
+
+springfit::ProgressCallback until_interrupted() {
+    return [](const springfit::Progress&) { return !interrupted(); };
+}
 
 } // namespace study
 
 int main(int argc, char** argv) {
-    using namespace study;
-    Settings settings;
-    std::string out;
-    std::string command = "springfit_study";
-    std::vector<std::string> only;
-    for (int a = 1; a < argc; ++a) {
-        const std::string option = argv[a];
-        const bool has_value = a + 1 < argc;
-        if (option == "--quick") {
-            settings.quick = true;
-            command += " --quick";
-        } else if (option == "--out" && has_value) {
-            out = argv[++a];
-        } else if (option == "--data" && has_value) {
-            settings.data = argv[++a];
-            command += " --data DIR";
-        } else if (option == "--seed" && has_value) {
-            try {
-                settings.seed = static_cast<unsigned>(std::stoul(argv[++a]));
-            } catch (const std::exception&) {
-                std::cerr << "--seed needs a number, not '" << argv[a] << "'\n";
-                return 2;
-            }
-            command += " --seed " + std::string(argv[a]);
-        } else if (option == "--only" && has_value) {
-            only.emplace_back(argv[++a]);
-            command += " --only " + only.back();
-        } else {
-            const bool help = option == "--help" || option == "-h";
-            (help ? std::cout : std::cerr) << (help ? "" : "unknown option, or one without its value: " + option + "\n")
-                                           << usage;
-            return help ? 0 : 2;
-        }
-    }
-    if (out.empty()) {
-        out = settings.quick ? "study-quick" : "docs/results";
+    Arguments arguments;
+    if (const int code = read(argc, argv, arguments); code >= 0) {
+        return code;
     }
 #ifdef SPRINGFIT_STUDY_PARALLEL
-    settings.execution = springfit::parallel::tbb();
+    arguments.settings.execution = springfit::parallel::tbb();
 #endif
     std::signal(SIGINT, on_interrupt);
     std::signal(SIGTERM, on_interrupt);
-    using Part = void (*)(Report&, const Settings&);
-    const std::vector<std::pair<std::string, Part>> parts = {
-        {"plane", study_plane}, {"solids", study_solids}};
-    for (const std::string& wanted : only) {
-        if (std::none_of(parts.begin(), parts.end(), [&](const auto& part) { return part.first == wanted; })) {
-            std::cerr << "no part '" << wanted << "'\n" << usage;
-            return 2;
-        }
-    }
     try {
-        Report report(out, command, settings.seed, settings.quick);
-        for (const auto& [name, part] : parts) {
-            if (!interrupted() && (only.empty() || std::find(only.begin(), only.end(), name) != only.end())) {
-                part(report, settings);
-            }
-        }
-        report.end(interrupted());
-        std::cout << "\n" << report.n_rows() << " rows in " << out << std::endl;
-        return interrupted() ? 130 : report.n_rows() > 0 ? 0 : 1;
+        study::Report report(arguments.out, arguments.command, arguments.settings.seed, arguments.settings.quick);
+        const bool cut_short = run(report, arguments);
+        report.end(cut_short);
+        std::cout << "\nresults in " << arguments.out << std::endl;
+        return cut_short ? 130 : report.has_failed() ? 1 : 0;
     } catch (const std::exception& error) {
         std::cerr << "error: " << error.what() << "\n";
         return 1;

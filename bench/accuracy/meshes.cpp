@@ -42,8 +42,6 @@ Mesh<3, double, Tet4> random_cut_box(const std::array<int, 3>& cells, const std:
 
 #ifdef SPRINGFIT_STUDY_CGAL
 
-bool has_cgal() { return true; }
-
 Mesh<2, double, Tri3> rectangle_mesh(double length, double height, Index n_nodes) {
     cgal::Outline outline;
     outline.points.resize(2, 4);
@@ -82,8 +80,6 @@ std::optional<Interpolation<double>> interpolation_at(const Mesh<3, double, Tet4
 }
 
 #else
-
-bool has_cgal() { return false; }
 
 Mesh<2, double, Tri3> rectangle_mesh(double length, double height, Index n_nodes) {
     const double cell = std::sqrt(length * height / static_cast<double>(n_nodes));

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include <springfit/core/execution.hpp>
+#include <springfit/core/progress.hpp>
 #include <springfit/fit/problem.hpp>
-#include <springfit/fit/trajectory_problem.hpp>
 #include <springfit/mesh/mesh.hpp>
 #include <springfit/motion/transfer.hpp>
 
@@ -19,7 +19,8 @@ namespace study {
 using springfit::Index;
 
 struct Settings {
-    bool quick = false;
+    bool quick = false;         ///< a few small rows of each part
+    bool large = false;         ///< also the fit of 1e5 springs
     std::filesystem::path data; ///< folder of surfaces; empty: parts that need them are skipped
     unsigned seed = 1;
     springfit::Execution execution{};
@@ -28,38 +29,43 @@ struct Settings {
 /// True once the user asked to stop.
 [[nodiscard]] bool interrupted();
 
-/// The parts; each returns early where `interrupted()`.
+/// What `stop_if_interrupted` throws; what was not yet reported is lost, what was is on disk.
+struct Interrupted {};
+
+/// Throws Interrupted once the user asked to stop.
+void stop_if_interrupted();
+
+/// Ends long work once the user asked to stop.
+[[nodiscard]] springfit::ProgressCallback until_interrupted();
+
+// The parts.
+
 void study_plane(Report& report, const Settings& settings);
 void study_solids(Report& report, const Settings& settings);
+void study_surfaces(Report& report, const Settings& settings);
+void study_setups(Report& report, const Settings& settings);
+void study_recovery(Report& report, const Settings& settings);
+void study_dynamics(Report& report, const Settings& settings);
+void study_coarse(Report& report, const Settings& settings);
+void study_time(Report& report, const Settings& settings);
 
-// What needs CGAL, each in the one translation unit that includes it; without CGAL, boxes and rectangles are cut from
+// What needs CGAL, in the one translation unit that includes it; without CGAL, boxes and rectangles are cut from
 // jittered grids, and there is nothing else.
 
-[[nodiscard]] bool has_cgal();
 [[nodiscard]] springfit::Mesh<2, double, springfit::Tri3> rectangle_mesh(double length, double height, Index n_nodes);
 [[nodiscard]] springfit::Mesh<3, double, springfit::Tet4> box_mesh(const std::array<double, 3>& size, Index n_nodes);
 /// The inside of a surface; nothing, with the reason on standard output, where there is no such file or no solid.
 [[nodiscard]] std::optional<springfit::Mesh<3, double, springfit::Tet4>> solid_mesh(const std::filesystem::path& path,
-                                                                                  Index n_nodes);
+                                                                                    Index n_nodes);
 /// Interpolation from the nodes of a mesh at points; nothing without CGAL.
 [[nodiscard]] std::optional<springfit::Interpolation<double>>
 interpolation_at(const springfit::Mesh<3, double, springfit::Tet4>& mesh, const springfit::Points<3, double>& points);
 
 /// Jittered hexahedra cut into tetrahedra at random, which favours no direction.
-[[nodiscard]] springfit::Mesh<3, double, springfit::Tet4> random_cut_box(const std::array<int, 3>& cells,
-                                                                       const std::array<double, 3>& size, unsigned seed);
+[[nodiscard]] springfit::Mesh<3, double, springfit::Tet4>
+random_cut_box(const std::array<int, 3>& cells, const std::array<double, 3>& size, unsigned seed);
 
 /// The exact minimiser of the acceleration fit by Ipopt; nothing where it is not built in.
 [[nodiscard]] std::optional<springfit::FitReport> exact_fit(const springfit::FitProblem& problem);
-
-/// A search without gradients: the best values found within a time.
-struct SearchResult {
-    std::string method;
-    double seconds = 0;
-    springfit::Values<double> theta;
-};
-/// Genetic algorithm and simulated annealing, each within the seconds; empty where they are not built in.
-[[nodiscard]] std::vector<SearchResult> searches(const springfit::TrajectoryProblem<3>& problem, double seconds,
-                                                 unsigned seed);
 
 } // namespace study

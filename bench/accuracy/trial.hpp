@@ -4,17 +4,10 @@
 #include <chrono>
 
 #include <springfit/closed_form/all.hpp>
-#include <springfit/closed_form/cauchy_split.hpp>
-#include <springfit/fit/acceleration_objective.hpp>
-#include <springfit/fit/dominant_term.hpp>
 #include <springfit/fit/trajectory.hpp>
-#include <springfit/mesh/structured.hpp>
 #include <springfit/motion/load_cases.hpp>
 #include <springfit/motion/record_static.hpp>
 #include <springfit/motion/strain.hpp>
-#include <springfit/network/topology.hpp>
-#include <springfit/score/motion_error.hpp>
-#include <springfit/step/static_solver.hpp>
 
 #include "study.hpp"
 
@@ -29,38 +22,53 @@ struct Cases {
     std::vector<Scenario<Dim, double>> scenarios;
     std::vector<Motion<Dim, double>> motions;
     int left_out = 0;
+
+    void add(Scenario<Dim, double> scenario, Motion<Dim, double> motion) {
+        scenarios.push_back(std::move(scenario));
+        motions.push_back(std::move(motion));
+    }
 };
 
+/// What is trained on and the three sets that judge.
 template <int Dim>
 struct CaseSets {
     Cases<Dim> training, loads, kinds, clamp;
-    double strain = 0; ///< of the linear response, 95th percentile over the edges
+
+    [[nodiscard]] int left_out() const { return training.left_out + loads.left_out + kinds.left_out + clamp.left_out; }
 };
+
+inline constexpr double small_strain = 1e-4; ///< geometry hardly changes
 
 /// How many cases, and how large.
 struct CaseSettings {
     int training = 120;
     int clamps = 3;
+    int loads = 9;
     int kinds = 10;
     int clamp = 9;
-    double strain = 1e-4; ///< small: geometry hardly changes
+    double strain = small_strain; ///< of the linear response, 95th percentile over the edges
 };
 
-/// Scales scenarios to a strain and records them.
+[[nodiscard]] inline std::string strain_text(double strain) {
+    return strain <= small_strain ? "small strain" : text("strain ", strain);
+}
+
+/// Scales scenarios to a strain and records their equilibria.
 template <class Reference>
 [[nodiscard]] Cases<Reference::dimension>
-recorded(const Reference& reference, const NodePairs& pairs, std::vector<Scenario<Reference::dimension, double>> cases,
-         double strain, const Execution& execution) {
+record_equilibria(const Reference& reference, const NodePairs& pairs,
+                  std::vector<Scenario<Reference::dimension, double>> scenarios, double strain,
+                  const Execution& execution) {
     constexpr int dim = Reference::dimension;
-    const StaticRecordOptions<double> options{.execution = execution};
-    (void)scale_to_strain<dim, double>(cases, pairs, make_static_solver(reference).rest_positions(), strain,
+    const StaticRecordOptions<double> options{.execution = execution, .progress = until_interrupted()};
+    (void)scale_to_strain<dim, double>(scenarios, pairs, make_static_solver(reference).rest_positions(), strain,
                                        [&](const auto& all) { return linear_responses(reference, all, options); });
-    auto recordings = record_statics(reference, cases, options);
+    auto recordings = record_statics(reference, scenarios, options);
+    stop_if_interrupted();
     Cases<dim> result;
-    for (std::size_t c = 0; c < cases.size(); ++c) {
+    for (std::size_t c = 0; c < scenarios.size(); ++c) {
         if (recordings[c].status == Status::converged) {
-            result.scenarios.push_back(std::move(cases[c]));
-            result.motions.push_back(std::move(recordings[c].motion));
+            result.add(std::move(scenarios[c]), std::move(recordings[c].motion));
         } else {
             ++result.left_out;
         }
@@ -70,12 +78,12 @@ recorded(const Reference& reference, const NodePairs& pairs, std::vector<Scenari
 
 /// The four sets of a body. Held-out cases depend on the seed alone, not on how many are trained on.
 template <class Reference>
-[[nodiscard]] CaseSets<Reference::dimension>
-record_sets(const Reference& reference, const NodePairs& pairs, const Body<Reference::dimension, double>& body,
-            const CaseSettings& cases, const Settings& settings) {
+[[nodiscard]] CaseSets<Reference::dimension> record_sets(const Reference& reference, const NodePairs& pairs,
+                                                         const Body<Reference::dimension, double>& body,
+                                                         const CaseSettings& cases, const Settings& settings) {
     const auto held_out = random_load_cases(body, {.training = cases.clamps,
                                                    .clamps = cases.clamps,
-                                                   .held_out_loads = 9,
+                                                   .held_out_loads = cases.loads,
                                                    .held_out_kinds = cases.kinds,
                                                    .held_out_clamp = cases.clamp,
                                                    .seed = 1000 + settings.seed});
@@ -86,132 +94,72 @@ record_sets(const Reference& reference, const NodePairs& pairs, const Body<Refer
                                                    .held_out_clamp = cases.clamp > 0 ? 1 : 0,
                                                    .seed = settings.seed});
     const auto record = [&](const auto& scenarios) {
-        return recorded(reference, pairs, scenarios, cases.strain, settings.execution);
+        return record_equilibria(reference, pairs, scenarios, cases.strain, settings.execution);
     };
     return {record(training.training), record(held_out.held_out_loads), record(held_out.held_out_kinds),
-            record(held_out.held_out_clamp), cases.strain};
-}
-
-/// The cases that are clamped like case `like`.
-template <int Dim>
-[[nodiscard]] Cases<Dim> under_clamps(const Cases<Dim>& cases, const std::vector<std::vector<int>>& clamps) {
-    Cases<Dim> result;
-    for (std::size_t c = 0; c < cases.motions.size(); ++c) {
-        if (std::find(clamps.begin(), clamps.end(), cases.motions[c].clamped) != clamps.end()) {
-            result.scenarios.push_back(cases.scenarios[c]);
-            result.motions.push_back(cases.motions[c]);
-        }
-    }
-    return result;
-}
-
-template <int Dim>
-[[nodiscard]] double error(const SpringNetwork<Dim, double>& network, const Cases<Dim>& cases,
-                           const Settings& settings) {
-    if (cases.motions.empty()) {
-        return std::numeric_limits<double>::quiet_NaN();
-    }
-    MotionErrorOptions<double> options;
-    options.max_iterations = 100;
-    options.execution = settings.execution;
-    return motion_error(network, cases.scenarios, cases.motions, {}, options).error;
-}
-
-template <int Dim>
-[[nodiscard]] Errors errors(const SpringNetwork<Dim, double>& network, const CaseSets<Dim>& sets,
-                            const Settings& settings) {
-    return {error(network, sets.loads, settings), error(network, sets.kinds, settings),
-            error(network, sets.clamp, settings)};
+            record(held_out.held_out_clamp)};
 }
 
 struct FitSettings {
-    double prior_weight = 1e-4;
-    double least_prior = 0.02;
-    int max_iterations = 15;
-    double tolerance = 5e-3;
-    int horizon = 0;
-    double damping_per_stiffness = 0;
+    double prior_weight = 1e-5;
+    int max_iterations = 20;
+    double tolerance = 2e-3;
+    int horizon = 0;                  ///< frames that a window of a motion predicts; 0: all
+    int window_stride = 0;            ///< frames from one window to the next; 0: the horizon
+    double damping_per_stiffness = 0; ///< s; above 0, damping follows stiffness
 };
 
 [[nodiscard]] inline double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+/// A network that matching of motion found, and how.
 template <int Dim>
-[[nodiscard]] TrajectoryOptions trajectory_options(const FitSettings& fit, const Settings& settings) {
-    TrajectoryOptions options;
-    options.prior_weight = fit.prior_weight;
-    options.parameters.least_prior = fit.least_prior;
-    options.parameters.damping_per_stiffness = fit.damping_per_stiffness;
-    options.horizon = fit.horizon;
-    options.execution = settings.execution;
-    return options;
-}
+struct MotionFit {
+    SpringNetwork<Dim, double> network;
+    TrajectoryReport report;
+    double seconds = 0; ///< with the set-up of the problem
+};
 
-/// Fits a network, whose own values are the prior, and scores it.
+// Defined in trial.cpp for both dimensions.
+
+[[nodiscard]] TrajectoryOptions trajectory_options(const FitSettings& fit, const Settings& settings);
+
+/// Matches the motion of a network, whose own values are the prior, to that of the training cases.
 template <int Dim>
-[[nodiscard]] Score trajectory_score(SpringNetwork<Dim, double>& network,
-                                     const std::vector<Motion<Dim, double>>& training, const CaseSets<Dim>& sets,
-                                     const FitSettings& fit, const Settings& settings) {
-    const auto start = std::chrono::steady_clock::now();
-    const TrajectoryProblem<Dim> problem(network, training, trajectory_options<Dim>(fit, settings));
-    GaussNewtonOptions options;
-    options.max_iterations = fit.max_iterations;
-    options.tolerance = fit.tolerance;
-    options.progress = [](const Progress&) { return !interrupted(); };
-    const TrajectoryReport report = gauss_newton(problem, options);
-    Score score{"trajectory", false, {}, seconds_since(start), std::string(to_string(report.status))};
-    if (usable(report.status)) {
-        apply(problem, report, network);
-        score.errors = errors(network, sets, settings);
-    } else {
-        score.errors = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
-                        std::numeric_limits<double>::infinity()};
-    }
-    score.note += text(", misfit ", report.misfit_start, " to ", report.misfit, ", ", report.iterations, " iterations, ",
-                       report.n_set_by_data(), " of ", report.theta.size(), " values set by data");
-    return score;
-}
+[[nodiscard]] MotionFit<Dim> match_motion(const SpringNetwork<Dim, double>& prior,
+                                          const std::vector<Motion<Dim, double>>& training, const FitSettings& fit,
+                                          const Settings& settings);
 
-/// The three acceleration fits of the stiffness.
+/// Error on a set of cases; NaN for none.
 template <int Dim>
-void add_acceleration_scores(Row& row, const SpringNetwork<Dim, double>& prior, const CaseSets<Dim>& sets,
-                             const Settings& settings) {
-    const auto start = std::chrono::steady_clock::now();
-    const FitProblem problem = acceleration_problem(prior, sets.training.motions, {}, settings.execution);
-    const double assembly = seconds_since(start);
-    const auto add = [&](const char* name, const FitReport& fit, double seconds) {
-        auto network = prior;
-        apply(problem, fit, network);
-        row.scores.push_back({name, false, errors(network, sets, settings), assembly + seconds,
-                              text("Phi ", fit.objective)});
-    };
-    const auto timed = [&](const char* name, const auto& solve) {
-        const auto begin = std::chrono::steady_clock::now();
-        const FitReport fit = solve();
-        add(name, fit, seconds_since(begin));
-    };
-    timed("one pass", [&] { return one_pass(problem, {.execution = settings.execution}); });
-    timed("dominant term", [&] { return dominant_term(problem, {.execution = settings.execution}); });
-    const auto begin = std::chrono::steady_clock::now();
-    if (const auto fit = exact_fit(problem)) {
-        add("exact", *fit, seconds_since(begin));
-    }
-}
+[[nodiscard]] double error(const SpringNetwork<Dim, double>& network, const Cases<Dim>& cases,
+                           const Settings& settings);
 
-/// Volume stiffness above this many shear moduli would make the cells lock: every cell on its own holds its volume, and
-/// there are several cells per node.
-inline constexpr double most_volume_stiffness = 6;
+/// Errors on the three held-out sets.
+template <int Dim>
+[[nodiscard]] Errors errors(const SpringNetwork<Dim, double>& network, const CaseSets<Dim>& sets,
+                            const Settings& settings);
 
-/// Gives a network with cells the values of `cauchy_split`, kept below that.
-template <int Dim, CellType Cell>
-void apply_cauchy_split(const Mesh<Dim, double, Cell>& mesh, const IsotropicSolid& solid,
-                        SpringNetwork<Dim, double>& network) {
-    auto split = cauchy_split(mesh, network.springs, solid, {.signed_volume = true});
-    const double mu = solid.young / (2 * (1 + solid.poisson));
-    split.volume_stiffness = split.volume_stiffness.cwiseMin(most_volume_stiffness * mu);
-    apply(split, network);
-}
+/// What came of matching motion, scored; `network` is the fitted one afterwards.
+template <int Dim>
+[[nodiscard]] Score trajectory_score(SpringNetwork<Dim, double>& network, const CaseSets<Dim>& sets,
+                                     const FitSettings& fit, const Settings& settings);
+
+/// A network whose springs an acceleration fit found.
+template <int Dim>
+struct AccelerationFit {
+    std::string method;
+    SpringNetwork<Dim, double> network;
+    double objective = 0;
+    double seconds = 0;
+};
+
+/// The three acceleration fits of the stiffness, `exact` only where it is built in.
+template <int Dim>
+[[nodiscard]] std::vector<AccelerationFit<Dim>> acceleration_fits(const SpringNetwork<Dim, double>& prior,
+                                                                  const std::vector<Motion<Dim, double>>& training,
+                                                                  const Settings& settings, int max_sweeps = 50);
 
 /// What to run on a row.
 struct Methods {
@@ -219,56 +167,34 @@ struct Methods {
     FitSettings fit{};
 };
 
-/// Scores the closed forms, and the fits that start from the first of them, on one network of a mesh.
-///
-/// `edge_forms` are the scores of closed forms on the edges alone; a network with more springs or with cells is
-/// compared with those too. The fitted network is left in `network`.
+/// Adds the fits that start from the values of a network; it is the fitted one afterwards.
+template <int Dim>
+void add_fits(Row& row, SpringNetwork<Dim, double>& network, const CaseSets<Dim>& sets, const Methods& methods,
+              const Settings& settings);
+
+/// Scores every closed form of the springs of a network, which gets the values of the first of them, the prior of fits.
 template <int Dim, CellType Cell>
-void run(Row& row, const Mesh<Dim, double, Cell>& mesh, const IsotropicSolid& solid,
-         SpringNetwork<Dim, double>& network, const CaseSets<Dim>& sets, const Methods& methods,
-         const Settings& settings, const std::vector<Score>& edge_forms = {}) {
-    row.nodes = static_cast<long>(network.n_nodes());
-    row.springs = static_cast<long>(network.n_springs());
-    if (edge_forms.empty()) {
-        bool is_first = true;
-        for (const auto& [name, form] : closed_forms(mesh, network.springs, solid)) {
-            auto closed = network;
-            apply(form, closed);
-            if (is_first) {
-                network = closed;
-                is_first = false;
-            }
-            row.scores.push_back({name, true, errors(closed, sets, settings), 0, form.caveat});
-        }
-    } else {
-        row.scores = edge_forms;
-        if (network.n_cells() == 0) {
-            if constexpr (SimplexCell<Cell>) {
-                apply(van_gelder(mesh, network.springs, solid), network);
-            }
-        }
+[[nodiscard]] std::vector<Score> closed_form_scores(const Mesh<Dim, double, Cell>& mesh, const IsotropicSolid& solid,
+                                                    SpringNetwork<Dim, double>& network, const CaseSets<Dim>& sets,
+                                                    const Settings& settings) {
+    std::vector<Score> scores;
+    const auto forms = closed_forms(mesh, network.springs, solid);
+    for (const auto& [name, form] : forms) {
+        auto closed = network;
+        apply(form, closed);
+        scores.push_back({name, true, errors(closed, sets, settings), 0, form.caveat});
     }
-    if (network.n_cells() > 0) {
-        if constexpr (SimplexCell<Cell> && Cell::dimension == Dim) {
-            apply_cauchy_split(mesh, solid, network);
-            row.scores.push_back({"cauchy_split", true, errors(network, sets, settings), 0, {}});
-        }
-    }
-    if (methods.acceleration) {
-        add_acceleration_scores(row, network, sets, settings);
-    }
-    row.scores.push_back(trajectory_score(network, sets.training.motions, sets, methods.fit, settings));
+    apply(forms.front().form, network);
+    return scores;
 }
 
-/// The closed forms among the scores of a row.
-[[nodiscard]] inline std::vector<Score> closed_form_scores(const Row& row) {
-    std::vector<Score> result;
-    for (const Score& score : row.scores) {
-        if (score.is_closed_form && score.method != "cauchy_split") {
-            result.push_back(score);
-        }
-    }
-    return result;
+/// Scores closed forms and fits of the springs of a network.
+template <int Dim, CellType Cell>
+void add_scores(Row& row, const Mesh<Dim, double, Cell>& mesh, const IsotropicSolid& solid,
+                SpringNetwork<Dim, double> network, const CaseSets<Dim>& sets, const Methods& methods,
+                const Settings& settings) {
+    row.scores = closed_form_scores(mesh, solid, network, sets, settings);
+    add_fits(row, network, sets, methods, settings);
 }
 
 } // namespace study

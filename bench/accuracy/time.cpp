@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fits.hpp"
+#include "solid.hpp"
+#include "svg.hpp"
+
+namespace study {
+
+namespace {
+
+/// One fit of springs along the edges of a box to 60 static cases.
+void add_large_fit(Report& report, Index n_nodes, double seconds_allowed, const Settings& settings) {
+    const ReferenceKind reference{.poisson = 0.3};
+    const TetMesh mesh = box_mesh(box_size, n_nodes);
+    CaseSettings cases;
+    cases.training = 60;
+    for (const Row& row : solid_rows("box, tetrahedra", mesh, body_of(mesh), reference, cases, {edges_alone},
+                                     {.acceleration = n_nodes < 5000}, settings)) {
+        report.add(row);
+        report.at_most(text("Seconds of a fit of ", row.springs, " springs to 60 static cases"),
+                       row.find("trajectory")->seconds, seconds_allowed);
+    }
+}
+
+/// Held-out errors of networks over the time that it took to find them.
+class Curves {
+public:
+    Curves(Report& report, const CaseSets<3>& sets, const Settings& settings)
+        : m_report(&report), m_sets(&sets), m_settings(&settings) {}
+
+    void add(const std::string& method, const TimedFit& fit) {
+        const Errors found = errors(fit.network, *m_sets, *m_settings);
+        auto series = std::find_if(m_chart.series.begin(), m_chart.series.end(),
+                                   [&](const auto& other) { return other.name == method; });
+        if (series == m_chart.series.end()) {
+            series = m_chart.series.insert(series, {method, {}, {}});
+        }
+        series->x.push_back(fit.seconds);
+        series->y.push_back(found.loads);
+        m_table.lines.push_back({method, number(fit.seconds), number(fit.objective), number(found.loads),
+                                 number(found.kinds), number(found.clamp)});
+        m_report->table(m_table);
+        m_report->figure("time", svg::lines(m_chart));
+    }
+
+private:
+    Report* m_report;
+    const CaseSets<3>* m_sets;
+    const Settings* m_settings;
+    svg::Chart m_chart{.title = "Unseen loads over the time of the search",
+                       .x_label = "seconds",
+                       .y_label = "relative error",
+                       .log_x = true,
+                       .log_y = true};
+    Table m_table{"time-engines",
+                  "Engines of trajectory matching on one problem, ended after some iterations or seconds. J: what they "
+                  "minimise. Genetic search and annealing look at values alone and have up to ten times the time of "
+                  "gauss_newton.",
+                  {"engine", "seconds", "J", "unseen loads", "unseen kinds", "unseen clamp"}};
+};
+
+void add_curves(Report& report, const Settings& settings) {
+    const ReferenceKind reference{.poisson = 0.3};
+    const TetMesh mesh = box_mesh(box_size, settings.quick ? 60 : 150);
+    CaseSettings cases;
+    cases.training = 36;
+    const auto sets = record_solid(mesh, reference, body_of(mesh), cases, settings);
+    const auto& training = sets.training.motions;
+    const auto prior = prior_network(mesh, reference, edges_alone);
+    Curves curves(report, sets, settings);
+    double seconds = 0;
+    for (int iterations : {1, 2, 3, 5, 8, 12, 20}) {
+        FitSettings fit;
+        fit.max_iterations = iterations;
+        fit.tolerance = 1e-5;
+        const auto found = match_motion(prior, training, fit, settings);
+        curves.add("gauss_newton", {found.seconds, found.report.objective, found.network});
+        seconds = found.seconds;
+    }
+    for (int iterations : {3, 10, 30, 100, 300}) {
+        if (const auto found = ipopt_fit(prior, training, iterations, {}, settings)) {
+            curves.add("ipopt", *found);
+        }
+    }
+    for (double factor : settings.quick ? std::vector{10.} : std::vector{1., 3., 10.}) {
+        if (const auto found = search_fit(Search::genetic, prior, training, factor * seconds, {}, settings)) {
+            curves.add("genetic", *found);
+        }
+        if (const auto found = search_fit(Search::annealing, prior, training, factor * seconds, {}, settings)) {
+            curves.add("annealing", *found);
+        }
+    }
+}
+
+} // namespace
+
+void study_time(Report& report, const Settings& settings) {
+    report.begin("time", "Time",
+                 "How long fits take on the machine of the summary, and what engines reach in how much time. A box of "
+                 "tetrahedra, springs along the edges, small strain, nu = 0.3.");
+    add_curves(report, settings);
+    add_large_fit(report, settings.quick ? 300 : 1650, 60, settings);
+    if (settings.large) {
+        add_large_fit(report, 15500, 900, settings);
+    } else {
+        report.at_most("Seconds of a fit of 1e5 springs to 60 static cases (option --large)",
+                       std::numeric_limits<double>::quiet_NaN(), 900);
+    }
+}
+
+} // namespace study
