@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "candidates.hpp"
 
+#include <tuple>
+
 #include <springfit/fit/acceleration_objective.hpp>
 #include <springfit/fit/dominant_term.hpp>
 #include <springfit/ipopt/exact.hpp>
+#include <springfit/motion/load_kinds.hpp>
 #include <springfit/network/damping.hpp>
 #include <springfit/network/forces.hpp>
 #include <springfit/score/motion_error.hpp>
@@ -161,14 +164,18 @@ void score(std::vector<Candidate<Dim>>& candidates, const ReferenceCases<Dim>& c
     const std::size_t parts = 2 * candidates.size();
     std::size_t part = 0;
     const auto error_of = [&](const SpringNetwork<Dim, double>& network, const CaseSet<Dim>& set) {
-        const double error =
-            motion_error(network, set.scenarios, set.motions, stage.callback(part++, parts), how).error;
-        return interrupted() ? std::numeric_limits<double>::infinity() : error;
+        auto found = motion_error(network, set.scenarios, set.motions, stage.callback(part++, parts), how);
+        if (interrupted()) {
+            found.error = std::numeric_limits<double>::infinity();
+        }
+        return found;
     };
     for (auto& candidate : candidates) {
-        candidate.held_out = error_of(candidate.network, cases.held_out);
+        auto held_out = error_of(candidate.network, cases.held_out);
+        candidate.held_out = held_out.error;
+        candidate.held_out_cases = std::move(held_out.case_errors);
         if (std::isfinite(candidate.held_out)) {
-            candidate.training = error_of(candidate.network, cases.training);
+            candidate.training = error_of(candidate.network, cases.training).error;
         } else {
             (void)stage.callback(part++, parts)({"score", 1});
         }
@@ -176,6 +183,40 @@ void score(std::vector<Candidate<Dim>>& candidates, const ReferenceCases<Dim>& c
             return;
         }
     }
+}
+
+template <int Dim>
+io::NamedNumbers held_out_parts(const Candidate<Dim>& candidate, const CaseSet<Dim>& held_out) {
+    io::NamedNumbers parts;
+    for (const auto& [part, in_time, trained] : {std::tuple{"motions_in_time", true, true},
+                                                 std::tuple{"equilibria_of_trained_kinds", false, true},
+                                                 std::tuple{"equilibria_of_unseen_kinds", false, false}}) {
+        double from_reference = 0;
+        double of_reference = 0;
+        for (std::size_t c = 0; c < candidate.held_out_cases.size(); ++c) {
+            const auto& motion = held_out.motions[c];
+            const bool is_in_time = motion.n_frames() > 1;
+            const bool is_trained = std::any_of(training_kinds.begin(), training_kinds.end(), [&](LoadKind kind) {
+                return motion.name.find(to_string(kind)) != std::string::npos;
+            });
+            if (is_in_time != in_time || (!in_time && is_trained != trained)) {
+                continue;
+            }
+            const FreeNodes free(motion.n_nodes(), motion.clamped);
+            double size = 0;
+            for (const auto& positions : motion.positions) {
+                for (int i : free.nodes()) {
+                    size += (positions.col(i) - motion.rest_positions.col(i)).squaredNorm();
+                }
+            }
+            from_reference += candidate.held_out_cases[c] * candidate.held_out_cases[c] * size;
+            of_reference += size;
+        }
+        if (of_reference > 0) {
+            parts.emplace_back(part, std::sqrt(from_reference / of_reference));
+        }
+    }
+    return parts;
 }
 
 io::Json describe(const FitReport& fit) {
@@ -194,6 +235,8 @@ template std::vector<Candidate<2>> make_candidates<2>(const Discretisation<2>&, 
                                                       const FitOptions&, const Execution&);
 template std::vector<Candidate<3>> make_candidates<3>(const Discretisation<3>&, const ReferenceCases<3>&,
                                                       const FitOptions&, const Execution&);
+template io::NamedNumbers held_out_parts<2>(const Candidate<2>&, const CaseSet<2>&);
+template io::NamedNumbers held_out_parts<3>(const Candidate<3>&, const CaseSet<3>&);
 template void score<2>(std::vector<Candidate<2>>&, const ReferenceCases<2>&, const Execution&);
 template void score<3>(std::vector<Candidate<3>>&, const ReferenceCases<3>&, const Execution&);
 

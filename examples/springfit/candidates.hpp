@@ -25,6 +25,7 @@ struct Candidate {
     double seconds = 0;
     double held_out = std::numeric_limits<double>::infinity(); ///< until it is scored in full
     double training = std::numeric_limits<double>::infinity();
+    std::vector<double> held_out_cases; ///< error of each held-out case on its own, once scored
     /// Elastic energy in the reference's training motion beside that of the first closed form: below 1 the springs resist
     /// that motion less.
     double relative_stiffness = 1;
@@ -42,6 +43,11 @@ template <int Dim>
 template <int Dim>
 void score(std::vector<Candidate<Dim>>& candidates, const ReferenceCases<Dim>& cases,
            const springfit::Execution& execution);
+
+/// Error of a candidate on the parts of the held-out set: motions in time, equilibria under loads of the kinds that
+/// training has, equilibria under kinds that it never shows; those that there are.
+template <int Dim>
+[[nodiscard]] springfit::io::NamedNumbers held_out_parts(const Candidate<Dim>& candidate, const CaseSet<Dim>& held_out);
 
 /// The report's part on one candidate.
 [[nodiscard]] springfit::io::Json describe(const springfit::FitReport& fit);

@@ -79,12 +79,12 @@ template <int Dim>
 void add_statics(const FemReference<Dim>& reference, const Body<Dim, double>& body, const FitOptions& options,
                  const Execution& execution, const std::function<bool(const std::vector<int>&)>& holds,
                  ReferenceCases<Dim>& result) {
-    auto split = random_load_cases(body, {.training = options.static_cases.value_or(24),
-                                                .clamps = 3,
-                                                .held_out_loads = 6,
-                                                .held_out_kinds = 5,
-                                                .held_out_clamp = 0,
-                                                .seed = options.seed + 1000}); // other loads than those in time
+    auto split = random_load_cases(body, {.training = options.static_cases.value_or(60),
+                                          .clamps = 3,
+                                          .held_out_loads = 6,
+                                          .held_out_kinds = 5,
+                                          .held_out_clamp = 0,
+                                          .seed = options.seed + 1000}); // other loads than those in time
     std::size_t n_left_out = 0;
     for (auto* set : {&split.training, &split.held_out_loads, &split.held_out_kinds}) {
         n_left_out += std::erase_if(*set, [&](const auto& scenario) {
@@ -95,27 +95,38 @@ void add_statics(const FemReference<Dim>& reference, const Body<Dim, double>& bo
         result.warnings.push_back(text(n_left_out, " equilibria are left out: their clamps hold the reference, but too few "
                                                    "nodes of the network; more --nodes may help"));
     }
-    std::vector<Scenario<Dim, double>> scenarios = split.training;
-    scenarios.insert(scenarios.end(), split.held_out_loads.begin(), split.held_out_loads.end());
-    scenarios.insert(scenarios.end(), split.held_out_kinds.begin(), split.held_out_kinds.end());
-    Stage stage("record statics");
-    auto recordings = reference.record_statics(scenarios, options.strain.value_or(0.1),
-                                               {.execution = execution, .progress = stage.callback()});
-    for (std::size_t c = 0; c < recordings.size(); ++c) {
-        auto& [motion, status] = recordings[c];
-        motion.name = "static " + scenarios[c].name;
-        result.interrupted = result.interrupted || status == Status::interrupted;
-        if (status != Status::converged) {
-            if (status != Status::interrupted) {
+    // Half of the training is at small strain, which is quick to record and to match and tells as much of most springs.
+    std::vector<Scenario<Dim, double>> small;
+    std::vector<Scenario<Dim, double>> large;
+    for (std::size_t c = 0; c < split.training.size(); ++c) {
+        (c % 2 == 1 ? small : large).push_back(std::move(split.training[c]));
+    }
+    auto judged = std::move(split.held_out_loads);
+    judged.insert(judged.end(), split.held_out_kinds.begin(), split.held_out_kinds.end());
+    const double strain = options.strain.value_or(0.05);
+    const auto add = [&](std::vector<Scenario<Dim, double>> scenarios, double wanted, CaseSet<Dim>& set) {
+        if (scenarios.empty()) {
+            return;
+        }
+        Stage stage("record statics");
+        auto recordings =
+            reference.record_statics(scenarios, wanted, {.execution = execution, .progress = stage.callback()});
+        for (std::size_t c = 0; c < recordings.size(); ++c) {
+            auto& [motion, status] = recordings[c];
+            motion.name = "static " + scenarios[c].name;
+            result.interrupted = result.interrupted || status == Status::interrupted;
+            if (status == Status::converged) {
+                set.scenarios.push_back(std::move(scenarios[c]));
+                set.motions.push_back(std::move(motion));
+            } else if (status != Status::interrupted) {
                 result.warnings.push_back(text("static load case ", scenarios[c].name,
                                                ": the reference found no equilibrium; a smaller --strain may help"));
             }
-            continue;
         }
-        auto& set = c < split.training.size() ? result.training : result.held_out;
-        set.scenarios.push_back(scenarios[c]);
-        set.motions.push_back(std::move(motion));
-    }
+    };
+    add(std::move(judged), strain, result.held_out);
+    add(std::move(large), strain, result.training);
+    add(std::move(small), strain / 50, result.training);
 }
 
 } // namespace

@@ -222,6 +222,11 @@ int fit_body(const AnyMesh& mesh, const std::optional<FineMesh>& fine_mesh,
     const bool score_interrupted = interrupted();
     since(scoring, "score");
     print_table<Dim>(candidates, best);
+    const io::NamedNumbers parts = held_out_parts<Dim>(chosen, cases.held_out);
+    for (const auto& [part, error] : parts) {
+        std::printf("%s, held out: %-28s %.4f\n", chosen.name.c_str(), part.c_str(), error);
+    }
+    std::printf("\n");
     if (fine) {
         std::printf("carried by the network, the %lld nodes of the reference have a held-out error of %.4f, of which "
                     "carrying alone makes %.4f\n\n",
@@ -272,7 +277,11 @@ int fit_body(const AnyMesh& mesh, const std::optional<FineMesh>& fine_mesh,
                      {"reference", cases.description},
                      {"seed", options.seed},
                      {"threads", options.threads},
-                     {"damping", options.damping}};
+                     {"damping", options.damping},
+                     {"held_out_parts", io::Json::object()}};
+    for (const auto& [part, error] : parts) {
+        report.detail["held_out_parts"][part] = error;
+    }
     if (fine) {
         report.detail["reference_nodes"] = at_reference_nodes;
     }

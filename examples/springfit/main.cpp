@@ -72,7 +72,7 @@ void declare_fit(CLI::App& app, program::FitOptions& options) {
     add_optional(app, "--static-cases", options.static_cases,
                  "equilibria, under three clamps, that matching of motion learns from (default 24)")
         ->group(cases);
-    add_optional(app, "--strain", options.strain, "strain that their loads aim at (default 0.1)")->group(cases);
+    add_optional(app, "--strain", options.strain, "strain that the loads of every second one, and of those that judge, aim at (default 0.05)")->group(cases);
     add_optional(app, "--frames", options.frames, "frames of each recorded motion (default 32)")->group(cases);
     add_optional(app, "--deformation", options.deformation,
                  "displacement the loads aim at, as a part of the body's size (default 0.05)")

@@ -16,6 +16,7 @@ std::optional<Candidate<Dim>> match_motion(const SpringNetwork<Dim, double>& pri
                                            const FitOptions& options, const Execution& execution) {
     TrajectoryOptions how;
     how.execution = execution;
+    how.prior_weight = 1e-5; // cases are many enough to say more than a closed form does
     std::vector<Motion<Dim, double>> learnt;
     for (const auto& motion : cases.training.motions) {
         if (motion.n_frames() == 1) {

@@ -13,6 +13,7 @@
 #include <springfit/fem/statics.hpp>
 #include <springfit/fit/acceleration_objective.hpp>
 #include <springfit/fit/dominant_term.hpp>
+#include <springfit/fit/trajectory.hpp>
 #include <springfit/mesh/structured.hpp>
 #include <springfit/motion/load_cases.hpp>
 #include <springfit/motion/noise.hpp>
