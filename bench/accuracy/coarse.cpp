@@ -45,12 +45,12 @@ void study_coarse(Report& report, const Settings& settings) {
     for (double poisson : ratios) {
         const ReferenceKind reference{.poisson = poisson, .mean_dilatation = poisson >= 0.45};
         CaseSettings cases;
-        cases.training = 60;
+        cases.training = settings.quick ? 60 : 120;
         const auto sets = record_solid(fine, reference, body_of(fine), cases, settings);
         const CaseSets<3> moved{carried(sets.training), carried(sets.loads), carried(sets.kinds), carried(sets.clamp)};
         const std::string setup = text("reference of ", fine.n_nodes(), " nodes");
         const auto forms = edge_form_scores(coarse, reference, moved, settings);
-        for (const NetworkKind& kind : {edges_alone, with_volume}) {
+        for (const NetworkKind& kind : {edges_alone, with_volume, with_both}) {
             const Row row = solid_row("box, tetrahedra", coarse, reference, setup, kind, moved, forms,
                                       {.acceleration = !kind.volume && poisson == 0.25}, settings);
             report.add(row);
