@@ -168,8 +168,8 @@ void study_dynamics(Report& report, const Settings& settings) {
         "vibration. The reference has stiffness-proportional damping, 3 % of critical at the slowest vibration; the "
         "networks' damping follows their stiffness with the same factor. Networks are fitted to static cases "
         "alone; their motion is stepped from the reference's start. Errors are those of all positions over all "
-        "frames: a small error of a frequency adds up over the periods. Bars are read for the linear material; "
-        "neo-Hookean is let go of at a strain of 5 %.");
+        "frames: a small error of a frequency adds up over the periods. The linear material is let go of at "
+        "small strain, neo-Hookean at 5 %.");
     Frequencies frequencies;
     const auto add_rows = [&](Index n_nodes, MaterialKind material, double strain,
                               const std::vector<NetworkKind>& kinds) {
