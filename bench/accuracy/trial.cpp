@@ -12,6 +12,7 @@ TrajectoryOptions trajectory_options(const FitSettings& fit, const Settings& set
     options.prior_weight = fit.prior_weight;
     options.parameters.damping_per_stiffness = fit.damping_per_stiffness;
     options.horizon = fit.horizon;
+    options.steps_per_frame = fit.steps_per_frame;
     options.window_stride = fit.window_stride;
     options.execution = settings.execution;
     return options;

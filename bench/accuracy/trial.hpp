@@ -106,6 +106,7 @@ struct FitSettings {
     double tolerance = 2e-3;
     int horizon = 0;                  ///< frames that a window of a motion predicts; 0: all
     int window_stride = 0;            ///< frames from one window to the next; 0: the horizon
+    int steps_per_frame = 1;          ///< of the integrator
     double damping_per_stiffness = 0; ///< s; above 0, damping follows stiffness
 };
 
