@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "candidates.hpp"
 
+#include <algorithm>
 #include <tuple>
 
 #include <springfit/fit/acceleration_objective.hpp>
@@ -44,23 +45,31 @@ double energy_in(const SpringNetwork<Dim, double>& network, const std::vector<Mo
 
 namespace {
 
-/// The closed form's network that is nearest to the training equilibria, the first where there are none.
+/// The closed form's network that is nearest to the half of the training equilibria that move least, where hardly any
+/// buckles; the first where there are none.
 template <int Dim>
 SpringNetwork<Dim, double> best_closed_form(const std::vector<Candidate<Dim>>& candidates,
                                             const ReferenceCases<Dim>& cases, const Execution& execution) {
-    CaseSet<Dim> statics;
+    std::vector<std::pair<double, std::size_t>> by_size;
     for (std::size_t c = 0; c < cases.training.motions.size(); ++c) {
-        if (cases.training.motions[c].n_frames() == 1) {
-            statics.scenarios.push_back(cases.training.scenarios[c]);
-            statics.motions.push_back(cases.training.motions[c]);
+        const auto& motion = cases.training.motions[c];
+        if (motion.n_frames() == 1) {
+            by_size.emplace_back((motion.positions.front() - motion.rest_positions).norm(), c);
         }
+    }
+    std::sort(by_size.begin(), by_size.end());
+    by_size.resize((by_size.size() + 1) / 2);
+    CaseSet<Dim> statics;
+    for (const auto& [size, c] : by_size) {
+        statics.scenarios.push_back(cases.training.scenarios[c]);
+        statics.motions.push_back(cases.training.motions[c]);
     }
     std::size_t best = 0;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t c = 0; c < candidates.size() && !statics.motions.empty(); ++c) {
-        const double error = motion_error(candidates[c].network, statics.scenarios, statics.motions, {},
-                                          MotionErrorOptions<double>{.step = {}, .execution = execution})
-                                 .error;
+        const MotionErrorOptions<double> how{
+            .step = {}, .max_iterations = 60, .stop_at_failure = true, .execution = execution};
+        const double error = motion_error(candidates[c].network, statics.scenarios, statics.motions, {}, how).error;
         if (error < least) {
             least = error;
             best = c;
@@ -159,7 +168,8 @@ std::vector<Candidate<Dim>> make_candidates(const Discretisation<Dim>& body, con
 template <int Dim>
 void score(std::vector<Candidate<Dim>>& candidates, const ReferenceCases<Dim>& cases, const Execution& execution) {
     // A network that needs more iterations to come to rest is of no use.
-    const MotionErrorOptions<double> how{.step = {}, .max_iterations = 100, .execution = execution};
+    const MotionErrorOptions<double> how{
+        .step = {}, .max_iterations = 60, .stop_at_failure = true, .execution = execution};
     Stage stage("score on motion");
     const std::size_t parts = 2 * candidates.size();
     std::size_t part = 0;

@@ -24,6 +24,8 @@ template <std::floating_point Scalar>
 struct MotionErrorOptions {
     SymplecticEulerOptions<Scalar> step{};
     int max_iterations = 500; ///< Newton iterations of a static case, >= 1
+    /// Leave out what is not begun once a case fails: the error is infinite either way. Those cases are `interrupted`.
+    bool stop_at_failure = false;
     Execution execution{};    ///< cases are independent of each other
 };
 
@@ -106,7 +108,7 @@ template <int Dim, std::floating_point Scalar>
 
 /// Error of a network on a set of cases: it is simulated under each scenario at the frame times of its reference
 /// (`simulate`); a reference of a single frame is a static equilibrium and is compared with the network's own under the
-/// clamps of the scenario, found from the scenario's start or, where that fails, from the reference's positions.
+/// clamps of the scenario, found from the reference's positions or, where that fails, from the scenario's start.
 ///
 /// The sums run over the nodes that are not clamped in the reference. A case that diverges, takes too many sub-steps or
 /// finds no equilibrium makes the error infinite, and the status says why: a network is not scored on the part of a
@@ -150,9 +152,10 @@ motion_error(const SpringNetwork<Dim, Scalar>& network, const std::vector<Scenar
             EquilibriumOptions<Dim, Scalar> statics;
             statics.time = reference.times.front();
             statics.max_iterations = options.max_iterations;
+            statics.start = reference.positions.front();
             auto rest = equilibrium(network, scenarios[c], statics);
             if (rest.status != Status::converged) {
-                statics.start = reference.positions.front();
+                statics.start.resize(Dim, 0);
                 rest = equilibrium(network, scenarios[c], statics);
             }
             statuses[c] = rest.status;
@@ -167,6 +170,7 @@ motion_error(const SpringNetwork<Dim, Scalar>& network, const std::vector<Scenar
         }
         if (statuses[c] != Status::converged && statuses[c] != Status::interrupted) {
             sums[c].from_reference = std::numeric_limits<double>::infinity();
+            stopped = stopped || options.stop_at_failure;
         }
     };
     options.execution.for_chunks(static_cast<Index>(references.size()), 1, [&](Index, Index begin, Index end) {
