@@ -51,7 +51,7 @@ demo)
     cmake --build build --target springfit
     fetch_surfaces elephant
     build/bin/springfit fit build/data/elephant.off --young 5e4 --poisson 0.45 --density 1000 \
-        --material neo-hookean --nodes 2000 --volume --out out/elephant
+        --material neo-hookean --nodes 2000 --volume --static-cases 36 --fit-seconds 120 --out out/elephant
     ;;
 test)
     install_missing $build_packages $test_packages

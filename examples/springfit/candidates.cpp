@@ -170,6 +170,13 @@ void score(std::vector<Candidate<Dim>>& candidates, const ReferenceCases<Dim>& c
     // A network that needs more iterations to come to rest is of no use.
     const MotionErrorOptions<double> how{
         .step = {}, .max_iterations = 60, .stop_at_failure = true, .execution = execution};
+    constexpr std::size_t most = 12; // training cases: what a fit has seen says little, and takes as long
+    CaseSet<Dim> sample;
+    const std::size_t stride = (cases.training.motions.size() + most - 1) / most;
+    for (std::size_t c = 0; c < cases.training.motions.size(); c += stride) {
+        sample.scenarios.push_back(cases.training.scenarios[c]);
+        sample.motions.push_back(cases.training.motions[c]);
+    }
     Stage stage("score on motion");
     const std::size_t parts = 2 * candidates.size();
     std::size_t part = 0;
@@ -180,17 +187,14 @@ void score(std::vector<Candidate<Dim>>& candidates, const ReferenceCases<Dim>& c
         }
         return found;
     };
-    for (auto& candidate : candidates) {
-        auto held_out = error_of(candidate.network, cases.held_out);
-        candidate.held_out = held_out.error;
-        candidate.held_out_cases = std::move(held_out.case_errors);
-        if (std::isfinite(candidate.held_out)) {
-            candidate.training = error_of(candidate.network, cases.training).error;
-        } else {
-            (void)stage.callback(part++, parts)({"score", 1});
-        }
-        if (interrupted()) {
-            return;
+    for (auto candidate = candidates.rbegin(); candidate != candidates.rend() && !interrupted(); ++candidate) {
+        auto held_out = error_of(candidate->network, cases.held_out);
+        candidate->held_out = held_out.error;
+        candidate->held_out_cases = std::move(held_out.case_errors);
+    }
+    for (auto candidate = candidates.rbegin(); candidate != candidates.rend() && !interrupted(); ++candidate) {
+        if (std::isfinite(candidate->held_out)) {
+            candidate->training = error_of(candidate->network, sample).error;
         }
     }
 }

@@ -38,8 +38,9 @@ template <int Dim>
                                                           const ReferenceCases<Dim>& cases, const FitOptions& options,
                                                           const springfit::Execution& execution);
 
-/// Fills in the errors of every candidate on both sets of load cases; a Ctrl-C leaves those not reached infinite. A
-/// candidate that fails on held-out motion is not tried on the training's.
+/// Fills in the errors of every candidate on the held-out load cases, fits first, and then on at most 12 of the training's,
+/// evenly spread; a Ctrl-C leaves those not reached infinite. A candidate that fails on held-out motion is not tried on
+/// the training's.
 template <int Dim>
 void score(std::vector<Candidate<Dim>>& candidates, const ReferenceCases<Dim>& cases,
            const springfit::Execution& execution);
