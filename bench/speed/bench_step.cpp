@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Nanoseconds per spring of one time step: explicit and implicit, each beside a plain hand-written loop.
 
+#include <numeric>
+
+#ifdef SPRINGFIT_BENCH_PARALLEL
+#include <springfit/parallel/tbb.hpp>
+#endif
 #include <springfit/step/implicit_euler.hpp>
-#include <springfit/step/symplectic_euler.hpp>
+#include <springfit/step/spring_body.hpp>
+#include <springfit/step/stable_step.hpp>
 
 #include "bodies.hpp"
 
@@ -10,26 +16,65 @@ namespace {
 
 using namespace springfit;
 
+/// Nodes and springs in random order, as a mesh from elsewhere may have them.
 template <int Dim, class Scalar>
-void explicit_step(benchmark::State& state, Index springs) {
-    const auto network = bench::network<Dim, Scalar>(springs);
-    const Scalar h = stable_step(network) / 2;
-    const Values<Scalar> inverse_masses = network.mass.cwiseInverse();
-    const Points<Dim, Scalar> external = Points<Dim, Scalar>::Zero(Dim, network.n_nodes());
-    Points<Dim, Scalar> positions = Scalar(1.01) * network.rest_positions;
-    Points<Dim, Scalar> velocities = external;
-    Points<Dim, Scalar> forces = external;
-    for (auto _ : state) {
-        symplectic_euler_step<Dim, Scalar>(network, inverse_masses, external, h, positions, velocities, forces);
-        benchmark::DoNotOptimize(positions.data());
-        benchmark::ClobberMemory();
+SpringNetwork<Dim, Scalar> shuffled(const SpringNetwork<Dim, Scalar>& network) {
+    std::mt19937 random(5);
+    std::vector<int> number(static_cast<std::size_t>(network.n_nodes()));
+    std::vector<int> spring(static_cast<std::size_t>(network.n_springs()));
+    std::iota(number.begin(), number.end(), 0);
+    std::iota(spring.begin(), spring.end(), 0);
+    std::shuffle(number.begin(), number.end(), random);
+    std::shuffle(spring.begin(), spring.end(), random);
+    SpringNetwork<Dim, Scalar> result = network;
+    for (Index i = 0; i < network.n_nodes(); ++i) {
+        result.rest_positions.col(number[static_cast<std::size_t>(i)]) = network.rest_positions.col(i);
+        result.mass(number[static_cast<std::size_t>(i)]) = network.mass(i);
     }
-    bench::count(state, network.n_springs());
+    for (Index e = 0; e < network.n_springs(); ++e) {
+        const int from = spring[static_cast<std::size_t>(e)];
+        for (int end : {0, 1}) {
+            result.springs(end, e) = number[static_cast<std::size_t>(network.springs(end, from))];
+        }
+        result.stiffness(e) = network.stiffness(from);
+        result.rest_length(e) = network.rest_length(from);
+        result.damping(e) = network.damping(from);
+    }
+    return result;
 }
 
 template <int Dim, class Scalar>
-void plain_loop(benchmark::State& state, Index springs) {
-    const auto network = bench::network<Dim, Scalar>(springs);
+void step_body(benchmark::State& state, const SpringNetwork<Dim, Scalar>& network, const Execution& execution) {
+    const Scalar h = stable_step(network) / 2;
+    SpringBody<Dim, Scalar> body(network, execution);
+    body.write(Scalar(1.01) * network.rest_positions, Points<Dim, Scalar>::Zero(Dim, network.n_nodes()));
+    for (auto _ : state) {
+        body.step(h);
+        benchmark::ClobberMemory();
+    }
+    bench::count(state, network.n_springs());
+    state.counters["bytes_per_spring"] = static_cast<double>(body.bytes()) / static_cast<double>(network.n_springs());
+}
+
+template <int Dim, class Scalar>
+void explicit_step(benchmark::State& state, Index springs) {
+    step_body(state, bench::network<Dim, Scalar>(springs), {});
+}
+
+template <int Dim, class Scalar>
+void explicit_step_random_order(benchmark::State& state, Index springs) {
+    step_body(state, shuffled(bench::network<Dim, Scalar>(springs)), {});
+}
+
+#ifdef SPRINGFIT_BENCH_PARALLEL
+template <int Dim, class Scalar>
+void explicit_step_two_threads(benchmark::State& state, Index springs) {
+    step_body(state, bench::network<Dim, Scalar>(springs), parallel::tbb(2));
+}
+#endif
+
+template <int Dim, class Scalar>
+void step_plainly(benchmark::State& state, const SpringNetwork<Dim, Scalar>& network) {
     auto body = bench::plain_body(network);
     for (Scalar& x : body.x) {
         x *= Scalar(1.01);
@@ -41,6 +86,16 @@ void plain_loop(benchmark::State& state, Index springs) {
         benchmark::ClobberMemory();
     }
     bench::count(state, network.n_springs());
+}
+
+template <int Dim, class Scalar>
+void plain_loop(benchmark::State& state, Index springs) {
+    step_plainly(state, bench::network<Dim, Scalar>(springs));
+}
+
+template <int Dim, class Scalar>
+void plain_loop_random_order(benchmark::State& state, Index springs) {
+    step_plainly(state, shuffled(bench::network<Dim, Scalar>(springs)));
 }
 
 /// One implicit Euler step of 30 times the stable step, from a stretched state.
@@ -64,12 +119,19 @@ void implicit_step(benchmark::State& state, Index springs) {
 
 template <int Dim, class Scalar>
 void add() {
-    for (Index springs : {1000, 10000, 100000}) {
+    for (Index springs : {1000, 10000, 100000, 1000000}) {
         const auto add_one = [&](const char* what, auto function) {
             return benchmark::RegisterBenchmark(bench::name<Dim, Scalar>(what, springs).c_str(), function, springs);
         };
-        add_one("explicit_step", explicit_step<Dim, Scalar>);
         add_one("plain_loop", plain_loop<Dim, Scalar>);
+        add_one("explicit_step", explicit_step<Dim, Scalar>);
+        if (springs >= 100000) {
+            add_one("plain_loop_random_order", plain_loop_random_order<Dim, Scalar>);
+            add_one("explicit_step_random_order", explicit_step_random_order<Dim, Scalar>);
+#ifdef SPRINGFIT_BENCH_PARALLEL
+            add_one("explicit_step_two_threads", explicit_step_two_threads<Dim, Scalar>)->UseRealTime();
+#endif
+        }
         if (springs <= 10000) {
             add_one("implicit_step", implicit_step<Dim, Scalar>)->Unit(benchmark::kMillisecond);
         }

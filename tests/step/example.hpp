@@ -4,6 +4,7 @@
 #include <random>
 
 #include <springfit/mesh/structured.hpp>
+#include <springfit/motion/scenario.hpp>
 #include <springfit/network/topology.hpp>
 
 namespace springfit::test {

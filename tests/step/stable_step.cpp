@@ -48,12 +48,12 @@ double true_limit(const SpringNetwork<Dim, double>& network, const Points<Dim, d
 template <int Dim, class Scalar>
 Scalar largest_speed(const SpringNetwork<Dim, Scalar>& network, Points<Dim, Scalar> x, Points<Dim, Scalar> v, Scalar h,
                      int steps) {
-    Points<Dim, Scalar> forces;
-    const Points<Dim, Scalar> none = Points<Dim, Scalar>::Zero(Dim, network.n_nodes());
-    const Values<Scalar> inverse = network.mass.cwiseInverse();
+    SpringBody<Dim, Scalar> body(network);
+    body.write(x, v);
     Scalar largest = 0;
     for (int s = 0; s < steps; ++s) {
-        symplectic_euler_step<Dim, Scalar>(network, inverse, none, h, x, v, forces);
+        body.step(h);
+        body.read(x, v);
         largest = std::max(largest, v.cwiseAbs().maxCoeff());
         if (!std::isfinite(largest)) {
             break;

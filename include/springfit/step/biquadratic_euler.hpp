@@ -104,7 +104,9 @@ public:
                 kick(h, state);
             }
             const Scalar time = m_before.time + dt * static_cast<Scalar>(s) / count;
-            driven.aim_clamps(time, h, state.positions, state.velocities);
+            driven.aim_clamps(
+                time, h, [&](int node) { return state.positions.col(node); },
+                [&](int node, const Vector<Dim, Scalar>& velocity) { state.velocities.col(node) = velocity; });
             state.positions += h * state.velocities;
             if (driven.loads_vary()) {
                 m_external = external_forces<Dim, Scalar>(scenario, m_network.mass, time);

@@ -4,26 +4,10 @@
 #include <springfit/motion/state.hpp>
 #include <springfit/network/forces.hpp>
 #include <springfit/step/detail/driven_scenario.hpp>
+#include <springfit/step/spring_body.hpp>
 #include <springfit/step/stable_step.hpp>
 
 namespace springfit {
-
-/// One explicit step of a network, in place: v += h a(x, v), then x += h v. This is the step of real-time use.
-///
-/// `inverse_masses` `[n_nodes]` holds 1 / m_i, and 0 at clamped nodes: those keep their velocity. `external_forces` and
-/// the scratch array `forces` are `[Dim x n_nodes]`. Stable for h below `stable_step(network)`; with cells, below
-/// `stable_step_at(network, positions)`. O(springs + cells), no allocation.
-template <int Dim, std::floating_point Scalar>
-void symplectic_euler_step(const SpringNetwork<Dim, Scalar>& network, const Values<Scalar>& inverse_masses,
-                           const Points<Dim, Scalar>& external_forces, Scalar h, Points<Dim, Scalar>& positions,
-                           Points<Dim, Scalar>& velocities, Points<Dim, Scalar>& forces) {
-    forces = external_forces;
-    add_spring_forces<Dim, Scalar>(network, positions, velocities, forces);
-    for (Index i = 0; i < positions.cols(); ++i) {
-        velocities.col(i) += h * inverse_masses(i) * forces.col(i);
-        positions.col(i) += h * velocities.col(i);
-    }
-}
 
 template <std::floating_point Scalar>
 struct SymplecticEulerOptions {
@@ -50,8 +34,7 @@ public:
 
     /// Throws InvalidArgument for a network or an option that cannot be used.
     explicit SymplecticEuler(SpringNetwork<Dim, Scalar> network, const SymplecticEulerOptions<Scalar>& options = {})
-        : m_network(std::move(network)), m_options(options) {
-        validate(m_network);
+        : m_network(std::move(network)), m_options(options), m_body(m_network) {
         require(options.step_fraction > 0 && options.step_fraction < 1, "step_fraction", "a value in (0, 1)",
                 options.step_fraction);
         require(options.max_substeps > 0, "max_substeps", "at least one", options.max_substeps);
@@ -84,34 +67,31 @@ public:
         m_before = state;
         const Scalar h = dt / static_cast<Scalar>(substeps);
         const detail::DrivenScenario<Dim, Scalar> driven(scenario, m_network.rest_positions);
-        m_inverse_masses = m_network.mass.cwiseInverse();
-        for (int node : driven.clamped()) {
-            m_inverse_masses(node) = 0;
-        }
         m_external = external_forces<Dim, Scalar>(scenario, m_network.mass, state.time);
 
+        m_body.set_clamped(driven.clamped());
+        m_body.set_external_forces(m_external);
         state.velocities += (h / 2) * state.accelerations;
+        m_body.write(state.positions, state.velocities);
         for (int s = 1; s <= substeps; ++s) {
             const Scalar time = state.time + dt * static_cast<Scalar>(s) / static_cast<Scalar>(substeps);
-            driven.aim_clamps(time, h, state.positions, state.velocities);
+            driven.aim_clamps(
+                time, h, [&](int node) { return m_body.position(node); },
+                [&](int node, const Vector<Dim, Scalar>& velocity) { m_body.set_velocity(node, velocity); });
             if (s == 1) {
-                state.positions += h * state.velocities;
+                m_body.drift(h);
             } else {
-                symplectic_euler_step<Dim, Scalar>(m_network, m_inverse_masses, m_external, h, state.positions,
-                                                   state.velocities, m_forces);
+                m_body.step(h);
             }
             if (driven.loads_vary()) {
                 m_external = external_forces<Dim, Scalar>(scenario, m_network.mass, time);
+                m_body.set_external_forces(m_external);
             }
         }
+        m_body.kick(h / 2);
+        m_body.read(state.positions, state.velocities);
         state.time += dt;
         apply_clamps<Dim, Scalar>(scenario, m_network.rest_positions, state.time, state.positions);
-        compute_accelerations<Dim, Scalar>(m_network, state.positions, state.velocities, m_external, m_forces);
-        for (Index i = 0; i < m_network.n_nodes(); ++i) {
-            if (m_inverse_masses(i) > 0) {
-                state.velocities.col(i) += (h / 2) * m_forces.col(i);
-            }
-        }
         detail::finish_frame<Dim, Scalar>(m_network, m_external, driven.clamped(), m_before, state);
         if (!detail::is_finite<Dim, Scalar>(state)) {
             state = m_before;
@@ -130,9 +110,8 @@ private:
     SpringNetwork<Dim, Scalar> m_network;
     SymplecticEulerOptions<Scalar> m_options;
     Scalar m_longest_substep;
-    Values<Scalar> m_inverse_masses;
+    SpringBody<Dim, Scalar> m_body;
     Points<Dim, Scalar> m_external;
-    Points<Dim, Scalar> m_forces;
     State<Dim, Scalar> m_before;
 };
 

@@ -27,12 +27,13 @@ public:
     [[nodiscard]] const std::vector<int>& clamped() const { return m_clamped; }
     [[nodiscard]] bool loads_vary() const { return m_loads_vary; }
 
-    /// Gives the clamped nodes the velocity that takes them to where they must be at `time`, h from now.
-    void aim_clamps(Scalar time, Scalar h, const Points<Dim, Scalar>& positions,
-                    Points<Dim, Scalar>& velocities) const {
+    /// Gives the clamped nodes the velocity that takes them to where they must be at `time`, h from now:
+    /// `set_velocity(node, v)`, where `position(node)` tells where they are.
+    template <class Position, class SetVelocity>
+    void aim_clamps(Scalar time, Scalar h, const Position& position, const SetVelocity& set_velocity) const {
         if (!m_clamps_move) {
             for (int node : m_clamped) {
-                velocities.col(node).setZero();
+                set_velocity(node, Vector<Dim, Scalar>(Vector<Dim, Scalar>::Zero()));
             }
             return;
         }
@@ -40,7 +41,7 @@ public:
             for (int node : clamp.nodes) {
                 const Vector<Dim, Scalar> rest = m_rest_positions.col(node);
                 const Vector<Dim, Scalar> goal = clamp.position ? clamp.position(rest, time) : rest;
-                velocities.col(node) = (goal - positions.col(node)) / h;
+                set_velocity(node, Vector<Dim, Scalar>((goal - position(node)) / h));
             }
         }
     }
@@ -58,7 +59,8 @@ bool is_finite(const State<Dim, Scalar>& state) {
     return state.positions.allFinite() && state.velocities.allFinite() && state.accelerations.allFinite();
 }
 
-/// The state of a network (springs or others that `compute_accelerations` knows) at time 0; clamped nodes start without acceleration.
+/// The state of a network (springs or others that `compute_accelerations` knows) at time 0; clamped nodes start without
+/// acceleration.
 template <int Dim, std::floating_point Scalar, class Network>
 State<Dim, Scalar> start_network(const Network& network, const Scenario<Dim, Scalar>& scenario) {
     validate(scenario, network.n_nodes());
@@ -75,8 +77,8 @@ State<Dim, Scalar> start_network(const Network& network, const Scenario<Dim, Sca
 
 /// Sets the accelerations of a state from its positions and velocities; clamped nodes: change of velocity over time.
 template <int Dim, std::floating_point Scalar, class Network>
-void finish_frame(const Network& network, const Points<Dim, Scalar>& external,
-                  const std::vector<int>& clamped, const State<Dim, Scalar>& before, State<Dim, Scalar>& state) {
+void finish_frame(const Network& network, const Points<Dim, Scalar>& external, const std::vector<int>& clamped,
+                  const State<Dim, Scalar>& before, State<Dim, Scalar>& state) {
     compute_accelerations<Dim, Scalar>(network, state.positions, state.velocities, external, state.accelerations);
     for (int node : clamped) {
         state.accelerations.col(node) =

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <concepts>
+
+/// Vectors of a few numbers that one instruction works on, by the vector types that GCC and Clang share: the compiler
+/// makes AVX, SSE or scalar instructions of them, whatever it is told that the machine has.
+namespace springfit::detail {
+
+template <std::floating_point Scalar, int Size>
+struct SimdOf {
+    typedef Scalar type __attribute__((vector_size(Size * sizeof(Scalar)))); // `using` would lose the attribute
+};
+
+template <std::floating_point Scalar, int Size>
+using Simd = typename SimdOf<Scalar, Size>::type;
+
+/// Stores vectors of four one after another in one instruction: a load of all right after would wait for two.
+template <int Size, class Four, std::floating_point Scalar>
+void concatenate(const Four* parts, Scalar* target) {
+    using All = Simd<Scalar, Size>;
+    if constexpr (Size == 4) {
+        *reinterpret_cast<All*>(target) = parts[0];
+    } else {
+        static_assert(Size == 8);
+        *reinterpret_cast<All*>(target) = __builtin_shufflevector(parts[0], parts[1], 0, 1, 2, 3, 4, 5, 6, 7);
+    }
+}
+
+/// What the step kernel keeps of a node in one load: its position and its velocity, in space (x y z - u v w -).
+///
+/// The difference d = (r, s) of the records of a spring's ends gives its vector and their relative velocity at once.
+template <int Dim, std::floating_point Scalar>
+struct NodeLanes;
+
+template <std::floating_point Scalar>
+struct NodeLanes<3, Scalar> {
+    using Record = Simd<Scalar, 8>;
+    using Force = Simd<Scalar, 4>; ///< (x y z -)
+    static constexpr int velocity = 4;
+
+    static void split(const Record& record, Force& position, Force& velocities) {
+        position = __builtin_shufflevector(record, record, 0, 1, 2, 3);
+        velocities = __builtin_shufflevector(record, record, 4, 5, 6, 7);
+    }
+    static void join(const Force& position, const Force& velocities, Record& record) {
+        record = __builtin_shufflevector(position, velocities, 0, 1, 2, 3, 4, 5, 6, 7);
+    }
+    /// The vector r of a difference.
+    static void vector(const Record& d, Force& r) { r = __builtin_shufflevector(d, d, 0, 1, 2, 3); }
+
+    /// |r|^2 and r . s of four differences.
+    static void products(const Record* d, Force& squares, Force& rates) {
+        Record first, last;
+        add_products(d[0], d[1], first);
+        add_products(d[2], d[3], last);
+        const Record sums = __builtin_shufflevector(first, last, 0, 1, 8, 9, 4, 5, 12, 13) +
+                            __builtin_shufflevector(first, last, 2, 3, 10, 11, 6, 7, 14, 15);
+        split(sums, squares, rates);
+    }
+
+private:
+    /// Half of the sums of two differences: (r_1 r_1, .) in pairs of lanes.
+    static void add_products(const Record& a, const Record& b, Record& sums) {
+        const Record x = __builtin_shufflevector(a, a, 0, 1, 2, 3, 0, 1, 2, 3) * a;
+        const Record y = __builtin_shufflevector(b, b, 0, 1, 2, 3, 0, 1, 2, 3) * b;
+        sums = __builtin_shufflevector(x, y, 0, 8, 1, 9, 4, 12, 5, 13) +
+               __builtin_shufflevector(x, y, 2, 10, 3, 11, 6, 14, 7, 15);
+    }
+};
+
+/// In the plane (x y u v); forces carry two lanes that mean nothing.
+template <std::floating_point Scalar>
+struct NodeLanes<2, Scalar> {
+    using Record = Simd<Scalar, 4>;
+    using Force = Simd<Scalar, 4>;
+    static constexpr int velocity = 2;
+
+    static void split(const Record& record, Force& position, Force& velocities) {
+        position = record;
+        velocities = __builtin_shufflevector(record, record, 2, 3, 0, 1);
+    }
+    static void join(const Force& position, const Force& velocities, Record& record) {
+        record = __builtin_shufflevector(position, velocities, 0, 1, 4, 5);
+    }
+    static void vector(const Record& d, Force& r) { r = d; }
+
+    static void products(const Record* d, Force& squares, Force& rates) {
+        Record first, last;
+        add_products(d[0], d[1], first);
+        add_products(d[2], d[3], last);
+        squares = __builtin_shufflevector(first, last, 0, 1, 4, 5);
+        rates = __builtin_shufflevector(first, last, 2, 3, 6, 7);
+    }
+
+private:
+    static void add_products(const Record& a, const Record& b, Record& sums) {
+        const Record x = __builtin_shufflevector(a, a, 0, 1, 0, 1) * a;
+        const Record y = __builtin_shufflevector(b, b, 0, 1, 0, 1) * b;
+        sums = __builtin_shufflevector(x, y, 0, 4, 2, 6) + __builtin_shufflevector(x, y, 1, 5, 3, 7);
+    }
+};
+
+} // namespace springfit::detail
