@@ -7,6 +7,7 @@
 #include <springfit/parallel/tbb.hpp>
 #endif
 #include <springfit/step/implicit_euler.hpp>
+#include <springfit/step/spring_batch.hpp>
 #include <springfit/step/spring_body.hpp>
 #include <springfit/step/stable_step.hpp>
 
@@ -64,6 +65,23 @@ void explicit_step(benchmark::State& state, Index springs) {
 template <int Dim, class Scalar>
 void explicit_step_random_order(benchmark::State& state, Index springs) {
     step_body(state, shuffled(bench::network<Dim, Scalar>(springs)), {});
+}
+
+/// 64 bodies of a network; per spring of each.
+template <int Dim, class Scalar>
+void batch_step(benchmark::State& state, Index springs) {
+    constexpr Index n_bodies = 64;
+    const auto network = bench::network<Dim, Scalar>(springs);
+    const Scalar h = stable_step(network) / 2;
+    SpringBatch<Dim, Scalar> batch(network, n_bodies);
+    for (Index b = 0; b < n_bodies; ++b) {
+        batch.write(b, Scalar(1.01) * network.rest_positions, Points<Dim, Scalar>::Zero(Dim, network.n_nodes()));
+    }
+    for (auto _ : state) {
+        batch.step(h);
+        benchmark::ClobberMemory();
+    }
+    bench::count(state, n_bodies * network.n_springs());
 }
 
 #ifdef SPRINGFIT_BENCH_PARALLEL
@@ -125,6 +143,9 @@ void add() {
         };
         add_one("plain_loop", plain_loop<Dim, Scalar>);
         add_one("explicit_step", explicit_step<Dim, Scalar>);
+        if (springs <= 10000) {
+            add_one("batch_step", batch_step<Dim, Scalar>);
+        }
         if (springs >= 100000) {
             add_one("plain_loop_random_order", plain_loop_random_order<Dim, Scalar>);
             add_one("explicit_step_random_order", explicit_step_random_order<Dim, Scalar>);

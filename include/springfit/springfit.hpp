@@ -34,6 +34,7 @@
 #include <springfit/step/biquadratic_euler.hpp>
 #include <springfit/step/equilibrium.hpp>
 #include <springfit/step/implicit_euler.hpp>
+#include <springfit/step/spring_batch.hpp>
 #include <springfit/step/spring_body.hpp>
 #include <springfit/step/static_solver.hpp>
 #include <springfit/step/symplectic_euler.hpp>
