@@ -17,7 +17,7 @@ namespace springfit {
 ///
 /// Memory: 4 Dim numbers per node and body. A step allocates nothing and costs O(bodies (springs + cells)).
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 class SpringBatch {
 public:
     static constexpr int dimension = Dim;

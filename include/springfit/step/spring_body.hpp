@@ -18,7 +18,7 @@ namespace springfit {
 /// Memory: 12 numbers per node in space, 8 in the plane, 3 numbers and two ints per spring. A step allocates nothing
 /// and costs O(springs + cells); docs/performance.md has the nanoseconds.
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 class SpringBody {
 public:
     static constexpr int dimension = Dim;

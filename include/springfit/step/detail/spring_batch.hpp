@@ -9,7 +9,7 @@
 namespace springfit {
 
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim> SpringBatch<Dim, ScalarType>::SpringBatch(const SpringNetwork<Dim, Scalar>& network,
+    requires SpatialDimension<Dim> SpringBatch<Dim, ScalarType>::SpringBatch(const SpringNetwork<Dim, Scalar>& network,
                                                                          Index n_bodies, const Execution& execution)
     : m_n_bodies(n_bodies), m_execution(execution),
       m_order((validate(network), locality_order(network.n_nodes(), network.springs))), m_number(m_order.size()) {
@@ -49,7 +49,7 @@ requires SpatialDimension<Dim> SpringBatch<Dim, ScalarType>::SpringBatch(const S
 
 /// Calls `visit(node of the network, its values, lane)` for the nodes of a body.
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 template <class Visit>
 void SpringBatch<Dim, ScalarType>::for_nodes(Index body, const Visit& visit) {
     require(body >= 0 && body < m_n_bodies, "body", text("a number in [0, ", m_n_bodies, ")"), body);
@@ -59,7 +59,7 @@ void SpringBatch<Dim, ScalarType>::for_nodes(Index body, const Visit& visit) {
 }
 
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 void SpringBatch<Dim, ScalarType>::read(Index body, Points<Dim, Scalar>& positions,
                                         Points<Dim, Scalar>& velocities) const {
     require(body >= 0 && body < m_n_bodies, "body", text("a number in [0, ", m_n_bodies, ")"), body);
@@ -74,7 +74,7 @@ void SpringBatch<Dim, ScalarType>::read(Index body, Points<Dim, Scalar>& positio
 }
 
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 void SpringBatch<Dim, ScalarType>::write(Index body, const Points<Dim, Scalar>& positions,
                                          const Points<Dim, Scalar>& velocities) {
     require(positions.cols() == n_nodes(), "positions", text(n_nodes(), " nodes"), positions.cols());
@@ -86,14 +86,14 @@ void SpringBatch<Dim, ScalarType>::write(Index body, const Points<Dim, Scalar>& 
 }
 
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 void SpringBatch<Dim, ScalarType>::set_external_forces(Index body, const Points<Dim, Scalar>& forces) {
     require(forces.cols() == n_nodes(), "forces", text(n_nodes(), " nodes"), forces.cols());
     for_nodes(body, [&](int i, Node& own, Index lane) { own.external.row(lane) = forces.col(i).transpose(); });
 }
 
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 void SpringBatch<Dim, ScalarType>::set_clamped(const std::vector<int>& nodes) {
     for (int node : nodes) {
         require(node >= 0 && node < n_nodes(), "nodes", text("node numbers in [0, ", n_nodes(), ")"), node);
@@ -105,7 +105,7 @@ void SpringBatch<Dim, ScalarType>::set_clamped(const std::vector<int>& nodes) {
 }
 
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 void SpringBatch<Dim, ScalarType>::step(Scalar h) {
     m_execution.for_chunks(Execution::n_chunks(m_n_bodies, lanes), 1, [&](Index group, Index, Index) {
         add_cell_forces(group);
@@ -116,7 +116,7 @@ void SpringBatch<Dim, ScalarType>::step(Scalar h) {
 /// All forces on a node are there once the springs that it is the lower end of are done: it can move at once, since
 /// later springs do not end at it.
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 void SpringBatch<Dim, ScalarType>::advance(Index group, Scalar h) {
     Node* const nodes = &node(group, 0);
     for (std::size_t i = 0; i < m_order.size(); ++i) {
@@ -149,7 +149,7 @@ void SpringBatch<Dim, ScalarType>::advance(Index group, Scalar h) {
 }
 
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 void SpringBatch<Dim, ScalarType>::add_cell_forces(Index group) {
     for (Index c = 0; c < m_cells.n_cells(); ++c) {
         for (int lane = 0; lane < lanes; ++lane) {

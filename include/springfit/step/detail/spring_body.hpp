@@ -8,7 +8,7 @@
 namespace springfit {
 
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim> SpringBody<Dim, ScalarType>::SpringBody(const SpringNetwork<Dim, Scalar>& network,
+    requires SpatialDimension<Dim> SpringBody<Dim, ScalarType>::SpringBody(const SpringNetwork<Dim, Scalar>& network,
                                                                        const Execution& execution)
     : m_springs((validate(network), network)), m_execution(execution) {
     const auto n = static_cast<std::size_t>(network.n_nodes());
@@ -30,7 +30,7 @@ requires SpatialDimension<Dim> SpringBody<Dim, ScalarType>::SpringBody(const Spr
 }
 
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim> std::size_t SpringBody<Dim, ScalarType>::bytes()
+    requires SpatialDimension<Dim> std::size_t SpringBody<Dim, ScalarType>::bytes()
 const {
     const std::size_t per_node = sizeof(Record) + 2 * sizeof(Force) + sizeof(Scalar) + 2 * sizeof(int);
     std::size_t total = m_nodes.size() * per_node;
@@ -41,7 +41,7 @@ const {
 }
 
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim> Vector<Dim, ScalarType> SpringBody<Dim, ScalarType>::position(int node)
+    requires SpatialDimension<Dim> Vector<Dim, ScalarType> SpringBody<Dim, ScalarType>::position(int node)
 const {
     const Record& record = m_nodes[static_cast<std::size_t>(m_springs.number(node))];
     Vector<Dim, Scalar> result;
@@ -52,7 +52,7 @@ const {
 }
 
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim> Vector<Dim, ScalarType> SpringBody<Dim, ScalarType>::velocity(int node)
+    requires SpatialDimension<Dim> Vector<Dim, ScalarType> SpringBody<Dim, ScalarType>::velocity(int node)
 const {
     const Record& record = m_nodes[static_cast<std::size_t>(m_springs.number(node))];
     Vector<Dim, Scalar> result;
@@ -63,7 +63,7 @@ const {
 }
 
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 void SpringBody<Dim, ScalarType>::set_velocity(int node, const Vector<Dim, Scalar>& velocity) {
     Record& record = m_nodes[static_cast<std::size_t>(m_springs.number(node))];
     for (int d = 0; d < Dim; ++d) {
@@ -72,7 +72,7 @@ void SpringBody<Dim, ScalarType>::set_velocity(int node, const Vector<Dim, Scala
 }
 
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 void SpringBody<Dim, ScalarType>::read(Points<Dim, Scalar>& positions, Points<Dim, Scalar>& velocities) const {
     positions.resize(Dim, n_nodes());
     velocities.resize(Dim, n_nodes());
@@ -87,7 +87,7 @@ void SpringBody<Dim, ScalarType>::read(Points<Dim, Scalar>& positions, Points<Di
 }
 
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 void SpringBody<Dim, ScalarType>::write(const Points<Dim, Scalar>& positions, const Points<Dim, Scalar>& velocities) {
     require(positions.cols() == n_nodes(), "positions", text(n_nodes(), " nodes"), positions.cols());
     require(velocities.cols() == n_nodes(), "velocities", text(n_nodes(), " nodes"), velocities.cols());
@@ -102,7 +102,7 @@ void SpringBody<Dim, ScalarType>::write(const Points<Dim, Scalar>& positions, co
 }
 
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 void SpringBody<Dim, ScalarType>::set_external_forces(const Points<Dim, Scalar>& forces) {
     require(forces.cols() == n_nodes(), "forces", text(n_nodes(), " nodes"), forces.cols());
     for (Index place = 0; place < n_nodes(); ++place) {
@@ -114,7 +114,7 @@ void SpringBody<Dim, ScalarType>::set_external_forces(const Points<Dim, Scalar>&
 }
 
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 void SpringBody<Dim, ScalarType>::set_clamped(const std::vector<int>& nodes) {
     for (int node : nodes) {
         require(node >= 0 && node < n_nodes(), "nodes", text("node numbers in [0, ", n_nodes(), ")"), node);
@@ -128,7 +128,7 @@ void SpringBody<Dim, ScalarType>::set_clamped(const std::vector<int>& nodes) {
 }
 
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 void SpringBody<Dim, ScalarType>::drift(Scalar h) {
     for (Record& record : m_nodes) {
         typename Lanes::Force position, velocity;
@@ -139,7 +139,7 @@ void SpringBody<Dim, ScalarType>::drift(Scalar h) {
 
 /// Forces of all domains first, then their nodes: a node must not move while another domain looks at it.
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 void SpringBody<Dim, ScalarType>::advance(Scalar h, bool drifts) {
     const auto& domains = m_springs.domains();
     const auto n_domains = static_cast<Index>(domains.size());
@@ -168,7 +168,7 @@ void SpringBody<Dim, ScalarType>::advance(Scalar h, bool drifts) {
 
 /// The force of a spring is (k - k l / L + c (r . s) / L^2) r, and 0 where its ends meet.
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 void SpringBody<Dim, ScalarType>::add_spring_forces(const std::vector<Block>& blocks, bool on_both_ends) {
     constexpr int lanes = Packed::lanes;
     using Values = Eigen::Array<Scalar, lanes, 1>;
@@ -213,7 +213,7 @@ void SpringBody<Dim, ScalarType>::add_spring_forces(const std::vector<Block>& bl
 }
 
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 void SpringBody<Dim, ScalarType>::add_cell_forces(const typename Packed::Domain& domain) {
     for (int c : domain.cells) {
         SimplexCorners<Dim, Scalar> corners;
