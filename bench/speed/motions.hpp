@@ -10,10 +10,11 @@
 
 namespace bench {
 
-/// 200 frames of smooth motion, twelve waves of about the body's size, with the network's own accelerations and a tenth
-/// of their size in noise, so that some bounds are active.
+/// 200 frames of smooth motion, twelve waves of about the body's size, with the network's own accelerations and noise of
+/// `relative_noise` times their root mean square.
 template <int Dim, class Scalar>
-[[nodiscard]] springfit::Motion<Dim, Scalar> smooth_motion(const springfit::SpringNetwork<Dim, Scalar>& network) {
+[[nodiscard]] springfit::Motion<Dim, Scalar> smooth_motion(const springfit::SpringNetwork<Dim, Scalar>& network,
+                                                           Scalar relative_noise = Scalar(0.1)) {
     using namespace springfit;
     std::mt19937 random(3);
     std::normal_distribution<Scalar> normal;
@@ -49,7 +50,7 @@ template <int Dim, class Scalar>
         }
         Points<Dim, Scalar> a;
         compute_accelerations<Dim, Scalar>(network, x, v, zero, a);
-        const Scalar noise = Scalar(0.1) * a.norm() / std::sqrt(static_cast<Scalar>(a.size()));
+        const Scalar noise = relative_noise * a.norm() / std::sqrt(static_cast<Scalar>(a.size()));
         for (Index i = 0; i < a.cols(); ++i) {
             a.col(i) += noise * vector();
         }

@@ -31,20 +31,26 @@ struct Solution {
     double seconds = 0;
 };
 
-/// The problem in the variables x = sqrt(H_uu) theta_u, which suit every solver better: 1/2 x'Hx - g'x in a box.
+/// The problem in variables that suit every solver better, x = sqrt(H_uu) (theta_u - prior_u):
+/// 1/2 x'Hx - g'x in a box, from x = 0. Away from 0 the value would lose the digits that line searches need.
 struct ScaledProblem {
     springfit::SparseMatrix<double> hessian; ///< both triangles
-    springfit::Values<double> linear, lower, upper, start;
-    springfit::Values<double> scale; ///< theta = x / scale
+    springfit::Values<double> linear, lower, upper;
+    double tolerance; ///< of the entries of x - clip(x - gradient), where `kkt_residual` is the one asked for
 
-    explicit ScaledProblem(const springfit::FitProblem& problem);
+    ScaledProblem(const springfit::FitProblem& problem, double kkt_residual);
+
+    /// The unknowns that belong to x, within their bounds.
+    [[nodiscard]] springfit::Values<double> theta(const springfit::Values<double>& x) const;
+
+private:
+    springfit::Values<double> m_scale, m_prior, m_lowest, m_highest;
 };
 
 /// PETSc's toolkit TAO by the method of this name: bnls, bntr, gpcg.
-/// `tolerance`: of the gradient's projection onto the box, relative to the largest entry of g.
-[[nodiscard]] Solution tao(const ScaledProblem& problem, const std::string& method, double tolerance);
+[[nodiscard]] Solution tao(const ScaledProblem& problem, const std::string& method);
 
 /// SciPy's L-BFGS-B, by a script that reads the problem from a file in a temporary folder.
-[[nodiscard]] Solution scipy(const ScaledProblem& problem, double tolerance);
+[[nodiscard]] Solution scipy(const ScaledProblem& problem);
 
 } // namespace bench::peers
