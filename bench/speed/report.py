@@ -95,7 +95,10 @@ def run(program, options):
         ]
         print(" ".join(command), file=sys.stderr)
         environment = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-        status = subprocess.run(command, stdout=subprocess.DEVNULL, env=environment, check=False).returncode
+        try:
+            status = subprocess.run(command, stdout=subprocess.DEVNULL, env=environment, check=False).returncode
+        except OSError as error:
+            status = error.strerror
         if status != 0:
             print(f"{program} ended with {status}; left out", file=sys.stderr)
             return None
@@ -223,8 +226,9 @@ def page_of_steps(runs):
         "`plain loop` is symplectic Euler as written in an hour (bench/speed/plain.hpp); explicit steps are half the stable "
         "step, implicit ones 30 stable steps from a stretched state. MuJoCo's step is the same mathematics as ours "
         "(three sliding joints per node, a tendon per spring). Bullet's soft body solves constraints on "
-        "positions, one pass over them; its deformable body has one stiffness for all springs, and its implicit step "
-        "a linear solve to rounding. Each library is as Debian builds it.\n\n" + page
+        "positions, one pass over them; its deformable body has one stiffness for all springs, and an implicit step is one "
+        "linear solve, to a relative residual of about the root of the precision's epsilon, where ours is Newton's method "
+        "to convergence. Each library is as Debian builds it.\n\n" + page
     )
 
 
@@ -258,9 +262,9 @@ def page_of_fits(runs):
 
 
 def page_of_roofline(runs, machine):
-    lines = []
+    lines = {}
     for run_ in runs:
-        for row in run_.rows:
+        for row in sorted(run_.rows, key=lambda r: r.ns):
             moved = row.counters.get("bytes_per_spring")
             if not moved or not machine.bandwidth:
                 continue
@@ -270,9 +274,10 @@ def page_of_roofline(runs, machine):
             peak = machine.peak.get(row.scalar)
             arithmetic = operations / peak * 1e9 if operations and peak else None
             bound = max(memory, arithmetic or 0)
-            lines.append(
+            lines.setdefault(
+                (row.kind, row.springs),
                 f"| {row.name}, {row.dim}d, {row.scalar} | {power(row.springs)} | {digits(moved)} | {digits(memory)} | "
-                f"{digits(arithmetic) if arithmetic else '-'} | {digits(row.ns)} | {digits(100 * bound / row.ns)} % |"
+                f"{digits(arithmetic) if arithmetic else '-'} | {digits(row.ns)} | {digits(100 * bound / row.ns)} % |",
             )
     if not lines:
         return ""
@@ -282,7 +287,7 @@ def page_of_roofline(runs, machine):
         "the speed allowed is reached. These two are of different programs, so the share is no better than the machine "
         "is steady.\n\n"
         "| | springs | bytes per spring | memory allows | operations allow | measured | share |\n|---|---|---|---|---|---|---|\n"
-        + "\n".join(dict.fromkeys(lines)) + "\n\n"
+        + "\n".join(lines[key] for key in sorted(lines)) + "\n\n"
     )
 
 
