@@ -10,8 +10,8 @@
 
 namespace bench {
 
-/// 200 frames of smooth motion, twelve waves of about the body's size, with the network's own accelerations and noise of
-/// `relative_noise` times their root mean square.
+/// 200 frames of smooth motion, twelve waves of about the body's size, with the network's own accelerations and noise
+/// of `relative_noise` times their root mean square.
 template <int Dim, class Scalar>
 [[nodiscard]] springfit::Motion<Dim, Scalar> smooth_motion(const springfit::SpringNetwork<Dim, Scalar>& network,
                                                            Scalar relative_noise = Scalar(0.1)) {
