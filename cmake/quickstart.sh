@@ -3,12 +3,14 @@
 #   sh cmake/quickstart.sh demo    a real solid, from its surface to a calibrated mass-spring model in out/elephant/
 #   sh cmake/quickstart.sh test    build everything and run the tests
 #   sh cmake/quickstart.sh study   the accuracy study of methods, meshes and materials, into docs/results/ (45 minutes)
+#   sh cmake/quickstart.sh performance   speed beside other programs, into docs/performance.md
 # All install the Debian packages that are missing; run again, they do only what is left to do.
 set -eu
 cd "$(dirname "$0")/.."
 
 build_packages="g++ cmake ninja-build pkg-config libeigen3-dev libtbb-dev libcgal-dev coinor-libipopt-dev
                 nlohmann-json3-dev libhdf5-dev libcli11-dev"
+bench_packages="libbenchmark-dev libbullet-dev libmujoco-dev libpetsc-real-dev python3-scipy"
 test_packages="doctest-dev libpagmo-dev python3 python3-h5py"
 
 install_missing() {
@@ -66,8 +68,18 @@ study)
     fetch_surfaces elephant fandisk knot1 bear
     build/bin/springfit_study --data build/data --out docs/results
     ;;
+performance)
+    install_missing $build_packages $bench_packages
+    cmake --preset bench
+    cmake --build build-bench --target springfit_speed
+    programs=""
+    for program in machine step peers_step peers_step_double fit peers_fit; do
+        [ ! -x "build-bench/bin/bench_$program" ] || programs="$programs build-bench/bin/bench_$program"
+    done
+    python3 bench/speed/report.py $programs --out docs
+    ;;
 *)
-    echo "usage: sh cmake/quickstart.sh demo|test|study" >&2
+    echo "usage: sh cmake/quickstart.sh demo|test|study|performance" >&2
     exit 2
     ;;
 esac

@@ -4,71 +4,20 @@
 
 #include <map>
 #include <memory>
-#include <numbers>
 
 #include <springfit/fit/acceleration_objective.hpp>
 #include <springfit/fit/dominant_term.hpp>
-#include <springfit/network/forces.hpp>
 #ifdef SPRINGFIT_BENCH_IPOPT
 #include <springfit/ipopt/exact.hpp>
 #endif
 
 #include "bodies.hpp"
+#include "motions.hpp"
 #include "plain_fit.hpp"
 
 namespace {
 
 using namespace springfit;
-
-/// 200 frames of smooth motion, twelve waves of about the body's size, with the network's own accelerations and a tenth
-/// of their size in noise, so that some bounds are active.
-template <int Dim, class Scalar>
-Motion<Dim, Scalar> smooth_motion(const SpringNetwork<Dim, Scalar>& network) {
-    std::mt19937 random(3);
-    std::normal_distribution<Scalar> normal;
-    const auto vector = [&] {
-        Vector<Dim, Scalar> v;
-        for (int d = 0; d < Dim; ++d) {
-            v(d) = normal(random);
-        }
-        return v;
-    };
-    struct Wave {
-        Vector<Dim, Scalar> direction, wave_vector;
-        Scalar frequency, phase;
-    };
-    std::vector<Wave> waves;
-    for (int w = 0; w < 12; ++w) {
-        waves.push_back({Scalar(0.02) * vector(), Scalar(4) * vector(), 1 + normal(random), normal(random)});
-    }
-    Motion<Dim, Scalar> motion;
-    motion.rest_positions = network.rest_positions;
-    const Points<Dim, Scalar> zero = Points<Dim, Scalar>::Zero(Dim, network.n_nodes());
-    for (int t = 0; t < 200; ++t) {
-        const Scalar time = Scalar(0.05) * static_cast<Scalar>(t);
-        Points<Dim, Scalar> x = network.rest_positions;
-        Points<Dim, Scalar> v = zero;
-        for (const Wave& wave : waves) {
-            for (Index i = 0; i < x.cols(); ++i) {
-                const Scalar angle = wave.wave_vector.dot(network.rest_positions.col(i)) + wave.frequency * time + wave.phase;
-                x.col(i) += std::sin(angle) * wave.direction;
-                v.col(i) += wave.frequency * std::cos(angle) * wave.direction;
-            }
-        }
-        Points<Dim, Scalar> a;
-        compute_accelerations<Dim, Scalar>(network, x, v, zero, a);
-        const Scalar noise = Scalar(0.1) * a.norm() / std::sqrt(static_cast<Scalar>(a.size()));
-        for (Index i = 0; i < a.cols(); ++i) {
-            a.col(i) += noise * vector();
-        }
-        motion.times.push_back(time);
-        motion.positions.push_back(x);
-        motion.velocities.push_back(v);
-        motion.accelerations.push_back(a);
-        motion.external_forces.push_back(zero);
-    }
-    return motion;
-}
 
 template <int Dim, class Scalar>
 struct Data {
@@ -87,7 +36,7 @@ const Data<Dim, Scalar>& data(Index springs) {
         kept.clear();
         auto made = std::make_unique<Data<Dim, Scalar>>();
         made->network = bench::network<Dim, Scalar>(springs);
-        made->motion = smooth_motion(made->network);
+        made->motion = bench::smooth_motion(made->network);
         made->problem = acceleration_problem<Dim, Scalar>(made->network, {made->motion});
         made->hessian = made->problem.objective.hessian().template selfadjointView<Eigen::Lower>();
         return *(kept[springs] = std::move(made));
