@@ -8,10 +8,9 @@
 #endif
 #include <springfit/step/implicit_euler.hpp>
 #include <springfit/step/spring_batch.hpp>
-#include <springfit/step/spring_body.hpp>
-#include <springfit/step/stable_step.hpp>
 
-#include "bodies.hpp"
+#include "run.hpp"
+#include "steps.hpp"
 
 namespace {
 
@@ -45,26 +44,8 @@ SpringNetwork<Dim, Scalar> shuffled(const SpringNetwork<Dim, Scalar>& network) {
 }
 
 template <int Dim, class Scalar>
-void step_body(benchmark::State& state, const SpringNetwork<Dim, Scalar>& network, const Execution& execution) {
-    const Scalar h = stable_step(network) / 2;
-    SpringBody<Dim, Scalar> body(network, execution);
-    body.write(Scalar(1.01) * network.rest_positions, Points<Dim, Scalar>::Zero(Dim, network.n_nodes()));
-    for (auto _ : state) {
-        body.step(h);
-        benchmark::ClobberMemory();
-    }
-    bench::count(state, network.n_springs());
-    state.counters["bytes_per_spring"] = static_cast<double>(body.bytes()) / static_cast<double>(network.n_springs());
-}
-
-template <int Dim, class Scalar>
-void explicit_step(benchmark::State& state, Index springs) {
-    step_body(state, bench::network<Dim, Scalar>(springs), {});
-}
-
-template <int Dim, class Scalar>
 void explicit_step_random_order(benchmark::State& state, Index springs) {
-    step_body(state, shuffled(bench::network<Dim, Scalar>(springs)), {});
+    bench::step_body(state, shuffled(bench::network<Dim, Scalar>(springs)));
 }
 
 /// 64 bodies of a network; per spring of each.
@@ -87,33 +68,13 @@ void batch_step(benchmark::State& state, Index springs) {
 #ifdef SPRINGFIT_BENCH_PARALLEL
 template <int Dim, class Scalar>
 void explicit_step_two_threads(benchmark::State& state, Index springs) {
-    step_body(state, bench::network<Dim, Scalar>(springs), parallel::tbb(2));
+    bench::step_body(state, bench::network<Dim, Scalar>(springs), parallel::tbb(2));
 }
 #endif
 
 template <int Dim, class Scalar>
-void step_plainly(benchmark::State& state, const SpringNetwork<Dim, Scalar>& network) {
-    auto body = bench::plain_body(network);
-    for (Scalar& x : body.x) {
-        x *= Scalar(1.01);
-    }
-    const Scalar h = stable_step(network) / 2;
-    for (auto _ : state) {
-        plain::step(body, h);
-        benchmark::DoNotOptimize(body.x.data());
-        benchmark::ClobberMemory();
-    }
-    bench::count(state, network.n_springs());
-}
-
-template <int Dim, class Scalar>
-void plain_loop(benchmark::State& state, Index springs) {
-    step_plainly(state, bench::network<Dim, Scalar>(springs));
-}
-
-template <int Dim, class Scalar>
 void plain_loop_random_order(benchmark::State& state, Index springs) {
-    step_plainly(state, shuffled(bench::network<Dim, Scalar>(springs)));
+    bench::step_plainly(state, shuffled(bench::network<Dim, Scalar>(springs)));
 }
 
 /// One implicit Euler step of 30 times the stable step, from a stretched state.
@@ -141,8 +102,8 @@ void add() {
         const auto add_one = [&](const char* what, auto function) {
             return benchmark::RegisterBenchmark(bench::name<Dim, Scalar>(what, springs).c_str(), function, springs);
         };
-        add_one("plain_loop", plain_loop<Dim, Scalar>);
-        add_one("explicit_step", explicit_step<Dim, Scalar>);
+        add_one("plain_loop", bench::plain_loop<Dim, Scalar>);
+        add_one("explicit_step", bench::explicit_step<Dim, Scalar>);
         if (springs <= 10000) {
             add_one("batch_step", batch_step<Dim, Scalar>);
         }
@@ -166,10 +127,5 @@ int main(int argc, char** argv) {
     add<2, double>();
     add<3, float>();
     add<3, double>();
-    benchmark::Initialize(&argc, argv);
-    if (benchmark::ReportUnrecognizedArguments(argc, argv)) {
-        return 1;
-    }
-    benchmark::RunSpecifiedBenchmarks();
-    benchmark::Shutdown();
+    return bench::run(argc, argv);
 }

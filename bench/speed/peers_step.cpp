@@ -3,60 +3,14 @@
 // All of one size follow one another, so that their ratios do not suffer from a machine that changes its speed.
 
 #include <springfit/step/implicit_euler.hpp>
-#include <springfit/step/symplectic_euler.hpp>
 
-#include "bodies.hpp"
 #include "peers/peers.hpp"
 #include "run.hpp"
+#include "steps.hpp"
 
 namespace {
 
 using namespace springfit;
-
-template <class Scalar>
-void explicit_step(benchmark::State& state, Index springs) {
-    const auto network = bench::network<3, Scalar>(springs);
-    const Scalar h = stable_step(network) / 2;
-    const Values<Scalar> inverse_masses = network.mass.cwiseInverse();
-    const Points<3, Scalar> external = Points<3, Scalar>::Zero(3, network.n_nodes());
-    Points<3, Scalar> positions = Scalar(1.01) * network.rest_positions;
-    Points<3, Scalar> velocities = external;
-    Points<3, Scalar> forces = external;
-    for (auto _ : state) {
-        symplectic_euler_step<3, Scalar>(network, inverse_masses, external, h, positions, velocities, forces);
-        benchmark::DoNotOptimize(positions.data());
-        benchmark::ClobberMemory();
-    }
-    bench::count(state, network.n_springs());
-}
-
-/// Bytes that a step of the plain loop moves if each array is read once and each array that changes written once.
-template <class Scalar>
-double bytes_of_a_plain_step(const plain::Body<3, Scalar>& body) {
-    const auto bytes = [](const auto& array) { return static_cast<double>(array.size() * sizeof(array[0])); };
-    return 2 * (bytes(body.x) + bytes(body.v) + bytes(body.f)) + bytes(body.mass) + bytes(body.fixed) +
-           bytes(body.ends) + bytes(body.k) + bytes(body.rest_length) + bytes(body.damping);
-}
-
-template <class Scalar>
-void plain_loop(benchmark::State& state, Index springs) {
-    const auto network = bench::network<3, Scalar>(springs);
-    auto body = bench::plain_body(network);
-    for (Scalar& x : body.x) {
-        x *= Scalar(1.01);
-    }
-    const Scalar h = stable_step(network) / 2;
-    for (auto _ : state) {
-        plain::step(body, h);
-        benchmark::DoNotOptimize(body.x.data());
-        benchmark::ClobberMemory();
-    }
-    bench::count(state, network.n_springs());
-    const auto n_springs = static_cast<double>(network.n_springs());
-    state.counters["bytes_per_spring"] = bytes_of_a_plain_step(body) / n_springs;
-    // per spring 31 sums and products, a root and two quotients, each counted as one; per node 15
-    state.counters["operations_per_spring"] = 34 + 15 * static_cast<double>(network.n_nodes()) / n_springs;
-}
 
 /// One implicit Euler step of 30 times the stable step, always from the same stretched state.
 template <class Scalar>
@@ -86,8 +40,8 @@ void add_own(Index springs) {
     const auto add = [&](const char* what, auto function) {
         benchmark::RegisterBenchmark(bench::name<3, Scalar>(what, springs).c_str(), function, springs);
     };
-    add("plain_loop", plain_loop<Scalar>);
-    add("explicit_step", explicit_step<Scalar>);
+    add("plain_loop", bench::plain_loop<3, Scalar>);
+    add("explicit_step", bench::explicit_step<3, Scalar>);
     if (springs <= 10000) {
         add("implicit_step", implicit_step<Scalar>);
     }
