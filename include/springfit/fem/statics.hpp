@@ -7,6 +7,7 @@
 #include <springfit/fem/model.hpp>
 #include <springfit/motion/state.hpp>
 #include <springfit/solve/newton.hpp>
+#include <springfit/solve/turned_solver.hpp>
 
 namespace springfit::fem {
 
@@ -81,7 +82,7 @@ private:
     std::vector<int> m_clamped;
     FreeNodes m_free;
     std::optional<detail::PotentialEnergy<M>> m_potential; ///< of m_model over m_free
-    SymmetricSolver<Scalar> m_solver;
+    TurnedSolver<dimension, Scalar> m_solver;
 };
 
 /// The static equilibrium of a model under the loads and clamps of a scenario at `time`: f_int(x) = f_ext.
