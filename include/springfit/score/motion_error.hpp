@@ -2,6 +2,8 @@
 #pragma once
 
 #include <atomic>
+#include <map>
+#include <memory>
 #include <mutex>
 
 #include <springfit/core/execution.hpp>
@@ -62,6 +64,35 @@ FreeNodes free_of(const Motion<Dim, Scalar>& reference, Index n_nodes) {
             text(reference.n_frames(), " frames of positions"), reference.positions.size());
     return FreeNodes(n_nodes, reference.clamped);
 }
+
+/// What static cases share that have their clamps in common: each once, and which is whose.
+template <int Dim, std::floating_point Scalar>
+struct HeldByCase {
+    std::vector<std::unique_ptr<HeldSprings<Dim, Scalar>>> held;
+    std::vector<std::size_t> of_case; ///< of no meaning for a case that is not static
+
+    HeldByCase(const SpringNetwork<Dim, Scalar>& network, const std::vector<Scenario<Dim, Scalar>>& scenarios,
+               const std::vector<Motion<Dim, Scalar>>& references, const Execution& execution)
+        : of_case(scenarios.size(), 0) {
+        std::map<std::vector<int>, std::size_t> numbers;
+        std::vector<std::vector<int>> clamps;
+        for (std::size_t c = 0; c < scenarios.size(); ++c) {
+            if (references[c].n_frames() == 1) {
+                const auto [place, is_new] =
+                    numbers.try_emplace(clamped_nodes(scenarios[c], network.n_nodes()), numbers.size());
+                if (is_new) {
+                    clamps.push_back(place->first);
+                }
+                of_case[c] = place->second;
+            }
+        }
+        held.resize(clamps.size());
+        execution.for_chunks(static_cast<Index>(clamps.size()), 1, [&](Index, Index begin, Index) {
+            const auto h = static_cast<std::size_t>(begin);
+            held[h] = std::make_unique<HeldSprings<Dim, Scalar>>(network, clamps[h]);
+        });
+    }
+};
 
 inline MotionError total_error(const std::vector<SquaredDistances>& sums, std::vector<Status>&& statuses) {
     MotionError result;
@@ -131,6 +162,7 @@ motion_error(const SpringNetwork<Dim, Scalar>& network, const std::vector<Scenar
         n_frames += static_cast<double>(references[c].n_frames());
     }
     const SymplecticEuler<Dim, Scalar> prototype(network, options.step);
+    const detail::HeldByCase<Dim, Scalar> statics_of(network, scenarios, references, options.execution);
     std::vector<detail::SquaredDistances> sums(references.size());
     std::vector<Status> statuses(references.size(), Status::interrupted);
     std::mutex reporting;
@@ -153,10 +185,11 @@ motion_error(const SpringNetwork<Dim, Scalar>& network, const std::vector<Scenar
             statics.time = reference.times.front();
             statics.max_iterations = options.max_iterations;
             statics.start = reference.positions.front();
-            auto rest = equilibrium(network, scenarios[c], statics);
+            const auto& springs = *statics_of.held[statics_of.of_case[c]];
+            auto rest = detail::equilibrium(springs, scenarios[c], statics, false);
             if (rest.status != Status::converged) {
                 statics.start.resize(Dim, 0);
-                rest = equilibrium(network, scenarios[c], statics);
+                rest = detail::equilibrium(springs, scenarios[c], statics, false);
             }
             statuses[c] = rest.status;
             if (rest.status == Status::converged && !compare(0, rest.positions)) {
