@@ -3,8 +3,7 @@
 
 #include <memory>
 
-#include <Eigen/SparseCholesky>
-
+#include <springfit/solve/detail/node_cholesky.hpp>
 #include <springfit/solve/free_nodes.hpp>
 
 namespace springfit {
@@ -14,7 +13,7 @@ namespace springfit {
 ///
 /// What an elastic body answers hardly depends on how it is turned, so this preconditions conjugate gradients in bent
 /// and twisted states almost as well as at rest. Copies share the factor, which does not change: one per thread. Memory:
-/// 12 bytes per entry of the factor, in double precision.
+/// 6 bytes per entry of the factor, which is kept in single precision.
 template <int Dim, std::floating_point Scalar>
 class TurnedFactor {
 public:
@@ -33,8 +32,10 @@ public:
             const Scalar square = r.squaredNorm();
             made->vectors.col(e) = square > 0 ? Vector<Dim, Scalar>(r / square) : r;
         }
-        made->factor.compute(lower);
-        if (lower.cols() > 0 && made->factor.info() == Eigen::Success && is_clear(made->factor, lower)) {
+        if (lower.cols() > 0) {
+            made->factor = detail::NodeCholesky<Dim, Scalar>(lower);
+        }
+        if (made->factor.is_usable()) {
             m_rest = std::move(made);
             turn(rest);
         }
@@ -64,44 +65,33 @@ public:
 
     /// solution = R K0^-1 R' right, over the free coordinates. O(entries of the factor).
     void apply(const Values<Scalar>& right, Values<Scalar>& solution) const {
-        Values<Scalar> turned(right.size());
-        for (Index f = 0; f < m_rotations.cols(); ++f) {
-            turned.template segment<Dim>(Dim * f) =
-                rotation(f).transpose() * right.template segment<Dim>(Dim * f);
+        using Work = typename detail::NodeCholesky<Dim, Scalar>::Work;
+        const std::vector<int>& order = m_rest->factor.order();
+        Work work = Work::Zero(Work::RowsAtCompileTime, m_rotations.cols());
+        for (std::size_t p = 0; p < order.size(); ++p) {
+            work.col(static_cast<Index>(p)).template head<Dim>() =
+                rotation(order[p]).transpose() * right.template segment<Dim>(Dim * order[p]);
         }
-        turned = m_rest->factor.solve(turned).eval();
+        m_rest->factor.solve(work);
         solution.resize(right.size());
-        for (Index f = 0; f < m_rotations.cols(); ++f) {
-            solution.template segment<Dim>(Dim * f) = rotation(f) * turned.template segment<Dim>(Dim * f);
+        for (std::size_t p = 0; p < order.size(); ++p) {
+            solution.template segment<Dim>(Dim * order[p]) =
+                rotation(order[p]) * work.col(static_cast<Index>(p)).template head<Dim>();
         }
     }
 
 private:
     using Rotation = Eigen::Matrix<Scalar, Dim, Dim>;
-    using Factor = Eigen::SimplicialLLT<SparseMatrix<Scalar>, Eigen::Lower>;
 
     struct Rest {
         FreeNodes free;
         NodePairs pairs;
         Points<Dim, Scalar> vectors; ///< r0 / |r0|^2 of each pair
-        Factor factor;
+        detail::NodeCholesky<Dim, Scalar> factor;
     };
 
     [[nodiscard]] Eigen::Map<const Rotation> rotation(Index f) const {
         return Eigen::Map<const Rotation>(m_rotations.col(f).data());
-    }
-
-    static bool is_clear(const Factor& factor, const SparseMatrix<Scalar>& lower) {
-        const auto& l = factor.matrixL().nestedExpression();
-        const auto& place = factor.permutationP().indices();
-        for (Index c = 0; c < lower.cols(); ++c) {
-            const Scalar pivot = l.valuePtr()[l.outerIndexPtr()[place(c)]];
-            const Scalar diagonal = lower.valuePtr()[lower.outerIndexPtr()[c]];
-            if (!(pivot * pivot > 1000 * std::numeric_limits<Scalar>::epsilon() * diagonal)) {
-                return false;
-            }
-        }
-        return true;
     }
 
     /// The rotation nearest to A, or the identity where A is no deformation of positive volume.
