@@ -17,7 +17,7 @@ struct MotionError {
     /// sqrt( sum |x - x_ref|^2 / sum |x_ref - x_rest|^2 ) over the free nodes, frames and cases of the set: 0 is the
     /// reference itself, 1 as bad as not moving at all; infinite where a case could not be simulated to its end.
     double error = 0;
-    Status status = Status::converged; ///< of the first case that did not end well
+    Status status = Status::converged; ///< of the first case that failed; without one, `interrupted` where it was
     std::vector<double> case_errors;   ///< the same of each case on its own
     std::vector<Status> case_statuses; ///< how the simulation of each case ended
 };
@@ -26,7 +26,8 @@ template <std::floating_point Scalar>
 struct MotionErrorOptions {
     SymplecticEulerOptions<Scalar> step{};
     int max_iterations = 500; ///< Newton iterations of a static case, >= 1
-    /// Leave out what is not begun once a case fails: the error is infinite either way. Those cases are `interrupted`.
+    /// Leave out what is not done once a case fails: the error is infinite either way. Those cases are `interrupted`, the
+    /// status of the whole is that of the case that failed.
     bool stop_at_failure = false;
     Execution execution{};    ///< cases are independent of each other
 };
@@ -102,8 +103,9 @@ inline MotionError total_error(const std::vector<SquaredDistances>& sums, std::v
         total.from_reference += sums[c].from_reference;
         total.of_reference += sums[c].of_reference;
         result.case_errors.push_back(sums[c].error());
-        if (result.status == Status::converged) {
-            result.status = result.case_statuses[c];
+        if (result.status == Status::converged || result.status == Status::interrupted) {
+            const Status status = result.case_statuses[c];
+            result.status = status == Status::converged ? result.status : status;
         }
     }
     result.error = total.error();

@@ -38,7 +38,7 @@ struct NewtonReport {
 ///
 /// `solver` is a `SymmetricSolver` or a `TurnedSolver` and keeps what it has learnt between calls. A problem with a
 /// semidefinite approximation of its Hessian (`use_semidefinite()`, false where it will not) changes to it where the
-/// solver meets negative curvature. `x` is the best point on return whatever the status. Stalls, rather than fails or
+/// solver meets negative curvature, one that knows where it is beyond hope (`is_lost(x)`) ends there, `diverged`. `x` is the best point on return whatever the status. Stalls, rather than fails or
 /// goes on for ever, where rounding stops progress above the tolerance.
 template <SmoothProblem P, class Solver>
 [[nodiscard]] NewtonReport<typename P::Scalar> minimise(P& problem, Values<typename P::Scalar>& x, Solver& solver,
@@ -51,10 +51,13 @@ template <SmoothProblem P, class Solver>
     Values<Scalar> step;
     Values<Scalar> trial;
     Values<Scalar> trial_gradient(x.size());
-    Scalar noise = 0;
-    if constexpr (requires { problem.energy_rounding(); }) {
-        noise = problem.energy_rounding();
-    }
+    const auto noise = [&] { // at the coordinates last used
+        if constexpr (requires { problem.energy_rounding(); }) {
+            return problem.energy_rounding();
+        } else {
+            return Scalar(0);
+        }
+    };
     const auto largest = [](const Values<Scalar>& values) {
         return values.size() > 0 ? values.template lpNorm<Eigen::Infinity>() : Scalar(0);
     };
@@ -89,7 +92,7 @@ template <SmoothProblem P, class Solver>
             return report;
         }
         const Scalar slope = gradient.dot(step);
-        const Scalar rounding = std::max(noise, 16 * epsilon * std::max(std::abs(report.energy), std::abs(slope)));
+        const Scalar rounding = std::max(noise(), 16 * epsilon * std::max(std::abs(report.energy), std::abs(slope)));
         Scalar length = 1;
         bool accepted = false;
         for (int halving = 0; halving < 40 && slope < 0; ++halving, length /= 2) {
@@ -117,11 +120,18 @@ template <SmoothProblem P, class Solver>
                 break;
             }
         }
+        if constexpr (requires { problem.is_lost(x); }) {
+            if (accepted && problem.is_lost(x)) {
+                ++report.iterations;
+                report.status = Status::diverged;
+                return report;
+            }
+        }
         if (!accepted && linear_tolerance > options.linear_tolerance) {
             linear_tolerance = options.linear_tolerance;
             continue;
         }
-        if (!accepted || n_creeping == 5) {
+        if (!accepted || n_creeping == 3) {
             report.status = report.gradient_max <= options.gradient_tolerance ? Status::converged : Status::stalled;
             report.iterations += accepted ? 1 : 0;
             return report;

@@ -65,6 +65,16 @@ void check(const SpringNetwork<Dim, Scalar>& network, const Scenario<Dim, Scalar
             text(network.n_nodes(), " columns, one per node"), options.start.cols());
 }
 
+/// How far a network that is held at all may go from its start, m: a thousand times its size.
+template <int Dim, std::floating_point Scalar>
+Scalar reach(const SpringNetwork<Dim, Scalar>& network, const Points<Dim, Scalar>& start) {
+    const auto extent = [](const Points<Dim, Scalar>& x) {
+        return (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).maxCoeff();
+    };
+    const Scalar longest = network.n_springs() > 0 ? network.rest_length.maxCoeff() : Scalar(0);
+    return 1000 * (extent(network.rest_positions) + extent(start) + longest);
+}
+
 /// The same as the function of this name, for a scenario whose clamped nodes are those of `held`. Whether it is stable
 /// is found where `find_stability` says so; that takes a factorisation of its own.
 template <int Dim, std::floating_point Scalar>
@@ -84,6 +94,7 @@ Equilibrium<Dim, Scalar> equilibrium(const HeldSprings<Dim, Scalar>& held, const
     const Points<Dim, Scalar> external = external_forces<Dim, Scalar>(scenario, network.mass, options.time);
     auto potential = held.potential();
     potential.set_statics(network, result.positions, external, Scalar(statics_floor));
+    potential.set_reach(reach(network, result.positions));
     potential.start_exact();
     Values<Scalar> x = free.template gather<Dim, Scalar>(result.positions);
     Values<Scalar> gradient(x.size());
@@ -95,7 +106,7 @@ Equilibrium<Dim, Scalar> equilibrium(const HeldSprings<Dim, Scalar>& held, const
     solver.set_factor(held.factor());
     NewtonOptions<Scalar> newton;
     newton.max_iterations = options.max_iterations;
-    newton.gradient_tolerance = std::max(options.tolerance * force, 4 * rounding);
+    newton.gradient_tolerance = std::max(options.tolerance * force, rounding / 16);
     newton.loose_tolerance = Scalar(0.1);
     const auto report = minimise(potential, x, solver, newton);
     const bool at_rounding = usable(report.status) && report.gradient_max <= 64 * rounding;
@@ -119,8 +130,9 @@ Equilibrium<Dim, Scalar> equilibrium(const HeldSprings<Dim, Scalar>& held, const
 /// gradients with the factor of the stiffness at rest, turned with the body.
 ///
 /// Springs alone need not hold a shape: see `Equilibrium::stable`. Where the matrix is singular or indefinite, Newton's
-/// step still goes downhill. Status `converged` only where the forces balance, to `tolerance` or to rounding. Throws
-/// InvalidArgument for a scenario or option that does not fit.
+/// step still goes downhill. Status `converged` only where the forces balance, to `tolerance` or to rounding; `diverged`
+/// where a node goes farther than a thousand times the network's size, which nothing holds then. Throws InvalidArgument
+/// for a scenario or option that does not fit.
 template <int Dim, std::floating_point Scalar>
 [[nodiscard]] Equilibrium<Dim, Scalar> equilibrium(const SpringNetwork<Dim, Scalar>& network,
                                                    const Scenario<Dim, Scalar>& scenario,

@@ -70,6 +70,14 @@ public:
         return changes;
     }
 
+    /// A node farther than this from where `set_statics` found it is lost, m.
+    void set_reach(Scalar reach) { m_reach = reach; }
+
+    /// Nothing holds the network: a node has gone out of reach.
+    [[nodiscard]] bool is_lost(const Values<Scalar>& x) {
+        return !((positions(x) - m_target).cwiseAbs().maxCoeff() <= m_reach);
+    }
+
     /// Where all nodes are for the free coordinates x, m.
     [[nodiscard]] const Points<Dim, Scalar>& positions(const Values<Scalar>& x) {
         free_nodes().template scatter<Dim, Scalar>(x, m_points);
@@ -186,6 +194,7 @@ private:
     Scalar m_damping = 0;
     Scalar m_floor = 0;
     Scalar m_exact_below = 0;
+    Scalar m_reach = std::numeric_limits<Scalar>::infinity();
     bool m_is_near = false;
     bool m_is_semidefinite = true; ///< far from the minimum
     Points<Dim, Scalar> m_points; ///< all nodes; the free ones at the x last asked for
