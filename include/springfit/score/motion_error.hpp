@@ -26,10 +26,10 @@ template <std::floating_point Scalar>
 struct MotionErrorOptions {
     SymplecticEulerOptions<Scalar> step{};
     int max_iterations = 500; ///< Newton iterations of a static case, >= 1
-    /// Leave out what is not done once a case fails: the error is infinite either way. Those cases are `interrupted`, the
-    /// status of the whole is that of the case that failed.
+    /// Leave out what is not done once a case fails: the error is infinite either way. Those cases are `interrupted`,
+    /// the status of the whole is that of the case that failed.
     bool stop_at_failure = false;
-    Execution execution{};    ///< cases are independent of each other
+    Execution execution{}; ///< cases are independent of each other
 };
 
 namespace detail {

@@ -38,8 +38,9 @@ struct NewtonReport {
 ///
 /// `solver` is a `SymmetricSolver` or a `TurnedSolver` and keeps what it has learnt between calls. A problem with a
 /// semidefinite approximation of its Hessian (`use_semidefinite()`, false where it will not) changes to it where the
-/// solver meets negative curvature, one that knows where it is beyond hope (`is_lost(x)`) ends there, `diverged`. `x` is the best point on return whatever the status. Stalls, rather than fails or
-/// goes on for ever, where rounding stops progress above the tolerance.
+/// solver meets negative curvature, one that knows where it is beyond hope (`is_lost(x)`) ends there, `diverged`. `x`
+/// is the best point on return whatever the status. Stalls, rather than fails or goes on for ever, where rounding stops
+/// progress above the tolerance.
 template <SmoothProblem P, class Solver>
 [[nodiscard]] NewtonReport<typename P::Scalar> minimise(P& problem, Values<typename P::Scalar>& x, Solver& solver,
                                                         const NewtonOptions<typename P::Scalar>& options) {

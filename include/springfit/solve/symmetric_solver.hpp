@@ -51,11 +51,10 @@ public:
         }
         m_factorised = false; // too far away by now
         if (m_max_diagonal_iterations > 0) {
-            const Values<Scalar> inverse =
-                a.diagonal().unaryExpr([](Scalar d) { return d > 0 ? 1 / d : Scalar(1); });
-            const auto outcome = conjugate_gradients(
-                a, b, x, tolerance, m_max_diagonal_iterations,
-                [&](const Values<Scalar>& r, Values<Scalar>& z) { z = inverse.cwiseProduct(r); });
+            const Values<Scalar> inverse = a.diagonal().unaryExpr([](Scalar d) { return d > 0 ? 1 / d : Scalar(1); });
+            const auto outcome =
+                conjugate_gradients(a, b, x, tolerance, m_max_diagonal_iterations,
+                                    [&](const Values<Scalar>& r, Values<Scalar>& z) { z = inverse.cwiseProduct(r); });
             if (outcome == CgOutcome::solved || (outcome == CgOutcome::indefinite && b.dot(x) > 0)) {
                 return true;
             }
@@ -129,8 +128,7 @@ private:
                 extended.insertBack(entry.row(), i) = entry.value();
             }
             for (typename SparseMatrix<Scalar>::InnerIterator entry(rows, i); entry; ++entry) {
-                extended.insertBack(n + entry.row(), i) =
-                    entry.value() * std::sqrt(std::abs(a.weight(entry.row())));
+                extended.insertBack(n + entry.row(), i) = entry.value() * std::sqrt(std::abs(a.weight(entry.row())));
             }
         }
         for (Index p = 0; p < terms; ++p) {

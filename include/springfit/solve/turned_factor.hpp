@@ -12,8 +12,8 @@ namespace springfit {
 /// surroundings of each node.
 ///
 /// What an elastic body answers hardly depends on how it is turned, so this preconditions conjugate gradients in bent
-/// and twisted states almost as well as at rest. Copies share the factor, which does not change: one per thread. Memory:
-/// 6 bytes per entry of the factor, which is kept in single precision.
+/// and twisted states almost as well as at rest. Copies share the factor, which does not change: one per thread.
+/// Memory: 6 bytes per entry of the factor, which is kept in single precision.
 template <int Dim, std::floating_point Scalar>
 class TurnedFactor {
 public:

@@ -126,13 +126,13 @@ Equilibrium<Dim, Scalar> equilibrium(const HeldSprings<Dim, Scalar>& held, const
 } // namespace detail
 
 /// The static equilibrium of a network under a scenario at one time: the minimum of the potential energy
-/// E(x) - f_ext . x over the free nodes, by Newton's method with a line search. Its linear systems are solved by conjugate
-/// gradients with the factor of the stiffness at rest, turned with the body.
+/// E(x) - f_ext . x over the free nodes, by Newton's method with a line search. Its linear systems are solved by
+/// conjugate gradients with the factor of the stiffness at rest, turned with the body.
 ///
 /// Springs alone need not hold a shape: see `Equilibrium::stable`. Where the matrix is singular or indefinite, Newton's
-/// step still goes downhill. Status `converged` only where the forces balance, to `tolerance` or to rounding; `diverged`
-/// where a node goes farther than a thousand times the network's size, which nothing holds then. Throws InvalidArgument
-/// for a scenario or option that does not fit.
+/// step still goes downhill. Status `converged` only where the forces balance, to `tolerance` or to rounding;
+/// `diverged` where a node goes farther than a thousand times the network's size, which nothing holds then. Throws
+/// InvalidArgument for a scenario or option that does not fit.
 template <int Dim, std::floating_point Scalar>
 [[nodiscard]] Equilibrium<Dim, Scalar> equilibrium(const SpringNetwork<Dim, Scalar>& network,
                                                    const Scenario<Dim, Scalar>& scenario,

@@ -45,8 +45,8 @@ NodePairs pairs_in_cells(const CellNodes& cells) {
     return result;
 }
 
-/// The factor of the model's stiffness at rest, with Poisson's ratio at most 0.4 and the dilatation of each point on its
-/// own: patches would fill it, and the plain elements' is as good a preconditioner. Membranes, whose stiffness is
+/// The factor of the model's stiffness at rest, with Poisson's ratio at most 0.4 and the dilatation of each point on
+/// its own: patches would fill it, and the plain elements' is as good a preconditioner. Membranes, whose stiffness is
 /// singular where they are flat, have none.
 template <class M>
 TurnedFactor<M::dimension, typename M::Scalar> rest_factor(const M& model, const FreeNodes& free) {
@@ -108,8 +108,7 @@ private:
 } // namespace detail
 
 template <class M>
-Statics<M>::Statics(M model, const StaticsOptions<Scalar>& options)
-    : m_model(std::move(model)), m_options(options) {
+Statics<M>::Statics(M model, const StaticsOptions<Scalar>& options) : m_model(std::move(model)), m_options(options) {
     require(options.tolerance > 0 && options.tolerance < 1, "tolerance", "a value in (0, 1)", options.tolerance);
     require(options.max_iterations >= 1, "max_iterations", "at least one iteration", options.max_iterations);
     require(options.max_halvings >= 0, "max_halvings", "a number not below 0", options.max_halvings);
@@ -176,8 +175,7 @@ Status Statics<M>::linear_response(const Scenario<dimension, Scalar>& scenario, 
         return Status::converged;
     }
     const Nodes loads = external_forces<dimension, Scalar>(scenario, masses(), time);
-    const Values<Scalar> push =
-        m_free.template gather<dimension, Scalar>(loads) - clamp_forces(rest, displacement);
+    const Values<Scalar> push = m_free.template gather<dimension, Scalar>(loads) - clamp_forces(rest, displacement);
     m_potential->nodes = rest;
     const auto stiffness = m_potential->hessian(m_free.template gather<dimension, Scalar>(rest));
     Values<Scalar> values;
@@ -232,16 +230,16 @@ auto Statics<M>::equilibrium(const Scenario<dimension, Scalar>& scenario, Scalar
         Nodes trial = follow_clamps(x, x + (load - report.load) * clamps_way);
         m_potential->nodes = trial;
         Values<Scalar> values = m_free.template gather<dimension, Scalar>(trial);
-        const Scalar largest = std::max(full_load.cwiseAbs().maxCoeff(),
-                                        m_model.internal_forces(trial).cwiseAbs().maxCoeff());
+        const Scalar largest =
+            std::max(full_load.cwiseAbs().maxCoeff(), m_model.internal_forces(trial).cwiseAbs().maxCoeff());
         NewtonOptions<Scalar> newton{.max_iterations = m_options.max_iterations};
         newton.linear_tolerance = Scalar(1e-3);
         newton.loose_tolerance = Scalar(0.1);
         m_solver.restart();
         newton.gradient_tolerance = m_options.tolerance * largest;
         if (std::isfinite(largest)) {
-            newton.gradient_tolerance = std::max(newton.gradient_tolerance,
-                                                 detail::force_rounding(m_potential->hessian(values), trial));
+            newton.gradient_tolerance =
+                std::max(newton.gradient_tolerance, detail::force_rounding(m_potential->hessian(values), trial));
         }
         const auto solved = minimise(*m_potential, values, m_solver, newton);
         report.iterations += solved.iterations;

@@ -9,8 +9,8 @@
 
 namespace springfit::detail {
 
-/// Cholesky factor L L' of a symmetric positive definite matrix whose unknowns come in groups of `Dim`, one per node, all
-/// coupled or not coupled at all. Kept as dense blocks in single precision, which is a third of the memory that a
+/// Cholesky factor L L' of a symmetric positive definite matrix whose unknowns come in groups of `Dim`, one per node,
+/// all coupled or not coupled at all. Kept as dense blocks in single precision, which is a third of the memory that a
 /// triangular solve has to read otherwise: for preconditioners. Immutable once made.
 template <int Dim, std::floating_point Scalar>
 class NodeCholesky {

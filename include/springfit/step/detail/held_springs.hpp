@@ -21,11 +21,12 @@ public:
         at_rest.set_statics(network, network.rest_positions, unloaded, Scalar(statics_floor));
         const Values<Scalar> x = free_nodes().template gather<Dim, Scalar>(network.rest_positions);
         for (const auto curvature : {Curvature::exact, Curvature::positive_semidefinite}) {
-            at_rest.set_exact_below(curvature == Curvature::exact ? std::numeric_limits<Scalar>::infinity() : Scalar(-1));
+            at_rest.set_exact_below(curvature == Curvature::exact ? std::numeric_limits<Scalar>::infinity()
+                                                                  : Scalar(-1));
             Values<Scalar> gradient(x.size());
             at_rest.gradient(x, gradient);
-            m_factor = TurnedFactor<Dim, Scalar>(at_rest.hessian(x), free_nodes(), network.springs,
-                                                 network.rest_positions);
+            m_factor =
+                TurnedFactor<Dim, Scalar>(at_rest.hessian(x), free_nodes(), network.springs, network.rest_positions);
             if (m_factor.is_usable()) {
                 return;
             }
