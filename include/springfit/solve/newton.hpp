@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+
 #include <springfit/core/status.hpp>
 #include <springfit/solve/symmetric_solver.hpp>
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
 #include <memory>
+#include <utility>
 
 #include <springfit/solve/detail/node_cholesky.hpp>
 #include <springfit/solve/free_nodes.hpp>

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <limits>
+#include <vector>
 
 #include <Eigen/SparseCholesky>
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <limits>
+
 #include <springfit/solve/turned_solver.hpp>
 #include <springfit/step/detail/spring_potential.hpp>
 
