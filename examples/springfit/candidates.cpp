@@ -41,9 +41,10 @@ double energy_in(const SpringNetwork<Dim, double>& network, const std::vector<Mo
     return energy;
 }
 
-} // namespace
-
-namespace {
+/// How a network is scored: one that needs more iterations to come to rest, or fails a case, is of no use.
+MotionErrorOptions<double> scoring(const Execution& execution) {
+    return {.step = {}, .max_iterations = 60, .stop_at_failure = true, .execution = execution};
+}
 
 /// The closed form's network that is nearest to the half of the training equilibria that move least, where hardly any
 /// buckles; the first where there are none.
@@ -67,9 +68,8 @@ SpringNetwork<Dim, double> best_closed_form(const std::vector<Candidate<Dim>>& c
     std::size_t best = 0;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t c = 0; c < candidates.size() && !statics.motions.empty(); ++c) {
-        const MotionErrorOptions<double> how{
-            .step = {}, .max_iterations = 60, .stop_at_failure = true, .execution = execution};
-        const double error = motion_error(candidates[c].network, statics.scenarios, statics.motions, {}, how).error;
+        const double error =
+            motion_error(candidates[c].network, statics.scenarios, statics.motions, {}, scoring(execution)).error;
         if (error < least) {
             least = error;
             best = c;
@@ -167,9 +167,6 @@ std::vector<Candidate<Dim>> make_candidates(const Discretisation<Dim>& body, con
 
 template <int Dim>
 void score(std::vector<Candidate<Dim>>& candidates, const ReferenceCases<Dim>& cases, const Execution& execution) {
-    // A network that needs more iterations to come to rest is of no use.
-    const MotionErrorOptions<double> how{
-        .step = {}, .max_iterations = 60, .stop_at_failure = true, .execution = execution};
     constexpr std::size_t most = 12; // training cases: what a fit has seen says little, and takes as long
     CaseSet<Dim> sample;
     const std::size_t stride = (cases.training.motions.size() + most - 1) / most;
@@ -181,7 +178,7 @@ void score(std::vector<Candidate<Dim>>& candidates, const ReferenceCases<Dim>& c
     const std::size_t parts = 2 * candidates.size();
     std::size_t part = 0;
     const auto error_of = [&](const SpringNetwork<Dim, double>& network, const CaseSet<Dim>& set) {
-        auto found = motion_error(network, set.scenarios, set.motions, stage.callback(part++, parts), how);
+        auto found = motion_error(network, set.scenarios, set.motions, stage.callback(part++, parts), scoring(execution));
         if (interrupted()) {
             found.error = std::numeric_limits<double>::infinity();
         }

@@ -140,6 +140,9 @@ void write_shown_motion(io::OutputGroup& outputs, const std::filesystem::path& f
     if (fine) {
         const auto& surface = fine->surface();
         write("surface.h5", fine->shown_at_surface(), io::motion_topology(surface), carry(surface, fitted));
+    } else { // what a run with a finer reference left there is of another network
+        outputs.remove(folder / "surface.h5");
+        outputs.remove(folder / "surface.xdmf");
     }
 }
 

@@ -69,6 +69,38 @@ TEST_CASE("when the last file of a group fails, none appears and the old ones ar
     CHECK(content(folder / "c.txt/inside") == "x");
 }
 
+TEST_CASE("what a group is to remove goes when the group appears, and stays where that fails") {
+    const ScratchFolder folder;
+    put(folder / "stale.txt", "old");
+    put(folder / "a.txt", "old");
+    {
+        OutputGroup outputs;
+        outputs.write(folder / "a.txt", "new");
+        outputs.remove(folder / "stale.txt");
+        CHECK_THROWS_AS(outputs.remove(folder / "a.txt"), InvalidArgument);
+    }
+    CHECK(folder.names() == std::vector<std::string>{"a.txt", "stale.txt"}); // never committed
+    {
+        OutputGroup outputs;
+        outputs.remove(folder / "stale.txt");
+        outputs.write(folder / "a.txt", "new");
+        outputs.write(folder / "c.txt", "new");
+        std::filesystem::create_directory(folder / "c.txt");
+        CHECK_FALSE(file_error([&] { outputs.commit(); }).empty());
+        std::filesystem::remove(folder / "c.txt");
+    }
+    CHECK(folder.names() == std::vector<std::string>{"a.txt", "stale.txt"});
+    CHECK(content(folder / "stale.txt") == "old");
+    CHECK(content(folder / "a.txt") == "old");
+    OutputGroup outputs;
+    outputs.write(folder / "a.txt", "new");
+    outputs.remove(folder / "stale.txt");
+    outputs.remove(folder / "never.txt");
+    outputs.commit();
+    CHECK(folder.names() == std::vector<std::string>{"a.txt"});
+    CHECK(content(folder / "a.txt") == "new");
+}
+
 TEST_CASE("a full disk is reported with the name of the file and leaves nothing") {
     const ScratchFolder folder;
     {

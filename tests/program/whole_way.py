@@ -81,6 +81,13 @@ run("fit", folder / "cube.off", "--young", 1e4, "--poisson", 0.3, "--density", 1
     1, "--held-out-cases", 1, "--frames", 8, "--method", "dominant-term", "--out", again)
 assert json.load(open(again / "report.json"))["method"] == "dominant_term"
 
+# What a run with a finer reference left in the folder does not stay beside the files of one without.
+for name in ("surface.h5", "surface.xdmf"):
+    (again / name).write_text("of another network")
+run("fit", folder / "cube.off", "--young", 1e4, "--poisson", 0.3, "--density", 1000, "--nodes", 60, "--training-cases",
+    1, "--held-out-cases", 1, "--frames", 8, "--method", "closed-form", "--out", again)
+assert sorted(p.name for p in again.iterdir()) == ["model.json", "motion.h5", "motion.xdmf", "report.json"]
+
 # The fitted model, stepped.
 for integrator in ("explicit", "implicit"):
     stepped = folder / integrator

@@ -213,6 +213,48 @@ TEST_CASE("progress is told, and stops the scoring") {
     CHECK(cut.motion.n_frames() == 3);
 }
 
+TEST_CASE("scoring that stops at a failed case says why it failed") {
+    const auto network = test::random_network<3, double>(0.001);
+    auto set = cases<3, double>(network);
+    set.scenarios[1].initial_velocities = Points<3, double>::Random(3, network.n_nodes()) * 1e170;
+    const auto in_order = [](bool forwards) {
+        return Execution([forwards](Index n, const Execution::Chunk& body) {
+            for (Index c = 0; c < n; ++c) {
+                body(forwards ? c : n - 1 - c);
+            }
+        });
+    };
+    using Statuses = std::vector<Status>;
+    for (const bool forwards : {true, false}) {
+        int calls = 0;
+        const auto count = [&](const Progress&) {
+            ++calls;
+            return true;
+        };
+        const auto all = motion_error(network, set.scenarios, set.references, count, {.execution = in_order(forwards)});
+        CHECK(all.status == Status::diverged);
+        CHECK(all.case_statuses == Statuses{Status::converged, Status::diverged, Status::converged});
+        const int calls_of_all = calls;
+        calls = 0;
+        const auto stopped = motion_error(network, set.scenarios, set.references, count,
+                                          {.stop_at_failure = true, .execution = in_order(forwards)});
+        CHECK(stopped.status == Status::diverged); // whichever case was left out
+        CHECK(std::isinf(stopped.error));
+        const Status begun = Status::converged;
+        const Status left_out = Status::interrupted;
+        CHECK(stopped.case_statuses ==
+              Statuses{forwards ? begun : left_out, Status::diverged, forwards ? left_out : begun});
+        CHECK(calls < calls_of_all);
+    }
+    // Without a failure it changes nothing, and a callback that asks to stop still does.
+    const auto fine = cases<3, double>(network);
+    const auto full = motion_error(network, fine.scenarios, fine.references, {}, {.stop_at_failure = true});
+    CHECK(full.status == Status::converged);
+    const auto asked = motion_error(network, fine.scenarios, fine.references, [](const Progress&) { return false; },
+                                    {.stop_at_failure = true});
+    CHECK(asked.status == Status::interrupted);
+}
+
 TEST_CASE("sets that do not fit together are refused") {
     const auto network = test::random_network<2, double>(0);
     auto set = cases<2, double>(network);

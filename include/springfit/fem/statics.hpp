@@ -7,6 +7,7 @@
 #include <springfit/fem/model.hpp>
 #include <springfit/motion/state.hpp>
 #include <springfit/solve/newton.hpp>
+#include <springfit/solve/turned_solver.hpp>
 
 namespace springfit::fem {
 
@@ -38,11 +39,10 @@ struct StaticsReport {
 
 /// Static equilibria of a model under one load case after another.
 ///
-/// The pattern of the stiffness and what the solver has learnt of it are kept for as long as the same nodes are
-/// clamped, so sort many load cases by their clamps. Linear systems of plane bodies are solved with a factorisation;
-/// those of solids by conjugate gradients with the diagonal (in a body of 2000 nodes, a factorisation costs as much as
-/// twenty of these), and so those of membranes, whose stiffness may be singular: a flat one answers loads in its plane.
-/// A model of the concept StaticSolver.
+/// The pattern of the stiffness and its factor at rest are kept for as long as the same nodes are clamped, so sort many
+/// load cases by their clamps. Linear systems are solved by conjugate gradients with that factor, turned with the body
+/// (`TurnedSolver`); those of membranes, whose stiffness may be singular, with the diagonal: a flat one answers loads
+/// in its plane. A model of the concept StaticSolver.
 template <class M>
 class Statics {
 public:
@@ -81,7 +81,7 @@ private:
     std::vector<int> m_clamped;
     FreeNodes m_free;
     std::optional<detail::PotentialEnergy<M>> m_potential; ///< of m_model over m_free
-    SymmetricSolver<Scalar> m_solver;
+    TurnedSolver<dimension, Scalar> m_solver;
 };
 
 /// The static equilibrium of a model under the loads and clamps of a scenario at `time`: f_int(x) = f_ext.

@@ -35,15 +35,19 @@ public:
     /// Writes all of `content` to the temporary file that will become `target`. Throws FileError naming `target`.
     void write(const std::filesystem::path& target, std::string_view content);
 
+    /// A file that a run before left under this name, and this one does not write, goes when the others appear. None
+    /// need be there.
+    void remove(const std::filesystem::path& target);
+
     /// Gives every file its name, as one. Throws FileError naming the file that could not be written; then none is.
     void commit();
 
 private:
     struct File {
         std::filesystem::path target;
-        std::filesystem::path temporary;
+        std::filesystem::path temporary; ///< empty: there is to be no such file
         std::filesystem::path backup; ///< what had the name before, while the renaming is under way
-        bool renamed = false;
+        bool renamed = false; ///< or removed
     };
     void flush() const;
     void back_up(File& file) const;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <atomic>
+#include <map>
+#include <memory>
 #include <mutex>
 
 #include <springfit/core/execution.hpp>
@@ -15,7 +17,7 @@ struct MotionError {
     /// sqrt( sum |x - x_ref|^2 / sum |x_ref - x_rest|^2 ) over the free nodes, frames and cases of the set: 0 is the
     /// reference itself, 1 as bad as not moving at all; infinite where a case could not be simulated to its end.
     double error = 0;
-    Status status = Status::converged; ///< of the first case that did not end well
+    Status status = Status::converged; ///< of the first case that failed; without one, `interrupted` where it was
     std::vector<double> case_errors;   ///< the same of each case on its own
     std::vector<Status> case_statuses; ///< how the simulation of each case ended
 };
@@ -24,9 +26,10 @@ template <std::floating_point Scalar>
 struct MotionErrorOptions {
     SymplecticEulerOptions<Scalar> step{};
     int max_iterations = 500; ///< Newton iterations of a static case, >= 1
-    /// Leave out what is not begun once a case fails: the error is infinite either way. Those cases are `interrupted`.
+    /// Leave out what is not done once a case fails: the error is infinite either way. Those cases are `interrupted`,
+    /// the status of the whole is that of the case that failed.
     bool stop_at_failure = false;
-    Execution execution{};    ///< cases are independent of each other
+    Execution execution{}; ///< cases are independent of each other
 };
 
 namespace detail {
@@ -63,6 +66,35 @@ FreeNodes free_of(const Motion<Dim, Scalar>& reference, Index n_nodes) {
     return FreeNodes(n_nodes, reference.clamped);
 }
 
+/// What static cases share that have their clamps in common: each once, and which is whose.
+template <int Dim, std::floating_point Scalar>
+struct HeldByCase {
+    std::vector<std::unique_ptr<HeldSprings<Dim, Scalar>>> held;
+    std::vector<std::size_t> of_case; ///< of no meaning for a case that is not static
+
+    HeldByCase(const SpringNetwork<Dim, Scalar>& network, const std::vector<Scenario<Dim, Scalar>>& scenarios,
+               const std::vector<Motion<Dim, Scalar>>& references, const Execution& execution)
+        : of_case(scenarios.size(), 0) {
+        std::map<std::vector<int>, std::size_t> numbers;
+        std::vector<std::vector<int>> clamps;
+        for (std::size_t c = 0; c < scenarios.size(); ++c) {
+            if (references[c].n_frames() == 1) {
+                const auto [place, is_new] =
+                    numbers.try_emplace(clamped_nodes(scenarios[c], network.n_nodes()), numbers.size());
+                if (is_new) {
+                    clamps.push_back(place->first);
+                }
+                of_case[c] = place->second;
+            }
+        }
+        held.resize(clamps.size());
+        execution.for_chunks(static_cast<Index>(clamps.size()), 1, [&](Index, Index begin, Index) {
+            const auto h = static_cast<std::size_t>(begin);
+            held[h] = std::make_unique<HeldSprings<Dim, Scalar>>(network, clamps[h]);
+        });
+    }
+};
+
 inline MotionError total_error(const std::vector<SquaredDistances>& sums, std::vector<Status>&& statuses) {
     MotionError result;
     result.case_statuses = std::move(statuses);
@@ -71,8 +103,9 @@ inline MotionError total_error(const std::vector<SquaredDistances>& sums, std::v
         total.from_reference += sums[c].from_reference;
         total.of_reference += sums[c].of_reference;
         result.case_errors.push_back(sums[c].error());
-        if (result.status == Status::converged) {
-            result.status = result.case_statuses[c];
+        if (result.status == Status::converged || result.status == Status::interrupted) {
+            const Status status = result.case_statuses[c];
+            result.status = status == Status::converged ? result.status : status;
         }
     }
     result.error = total.error();
@@ -131,6 +164,7 @@ motion_error(const SpringNetwork<Dim, Scalar>& network, const std::vector<Scenar
         n_frames += static_cast<double>(references[c].n_frames());
     }
     const SymplecticEuler<Dim, Scalar> prototype(network, options.step);
+    const detail::HeldByCase<Dim, Scalar> statics_of(network, scenarios, references, options.execution);
     std::vector<detail::SquaredDistances> sums(references.size());
     std::vector<Status> statuses(references.size(), Status::interrupted);
     std::mutex reporting;
@@ -153,10 +187,11 @@ motion_error(const SpringNetwork<Dim, Scalar>& network, const std::vector<Scenar
             statics.time = reference.times.front();
             statics.max_iterations = options.max_iterations;
             statics.start = reference.positions.front();
-            auto rest = equilibrium(network, scenarios[c], statics);
+            const auto& springs = *statics_of.held[statics_of.of_case[c]];
+            auto rest = detail::equilibrium(springs, scenarios[c], statics, false);
             if (rest.status != Status::converged) {
                 statics.start.resize(Dim, 0);
-                rest = equilibrium(network, scenarios[c], statics);
+                rest = detail::equilibrium(springs, scenarios[c], statics, false);
             }
             statuses[c] = rest.status;
             if (rest.status == Status::converged && !compare(0, rest.positions)) {

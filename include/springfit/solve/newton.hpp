@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+
 #include <springfit/core/status.hpp>
 #include <springfit/solve/symmetric_solver.hpp>
 
@@ -21,6 +23,7 @@ struct NewtonOptions {
     int max_iterations = 50;
     Scalar gradient_tolerance = 0;  ///< stop when the largest entry of the gradient is at most this, in its unit
     Scalar linear_tolerance = 1e-4; ///< relative residual of each linear solve, in (0, 1)
+    Scalar loose_tolerance = 0;     ///< the same far from the minimum, where the gradient falls slowly; 0: no looser
 };
 
 /// How a Newton minimisation ended.
@@ -35,11 +38,13 @@ struct NewtonReport {
 /// Minimises a smooth problem from `x` by Newton's method with a backtracking line search (Armijo; where the energy no
 /// longer resolves the step, the gradient must fall instead).
 ///
-/// `solver` keeps its symbolic analysis and factorisation between calls; `x` is the best point on return whatever the
-/// status. Stalls, rather than fails, where rounding stops progress above the tolerance.
-template <SmoothProblem P>
-[[nodiscard]] NewtonReport<typename P::Scalar> minimise(P& problem, Values<typename P::Scalar>& x,
-                                                        SymmetricSolver<typename P::Scalar>& solver,
+/// `solver` is a `SymmetricSolver` or a `TurnedSolver` and keeps what it has learnt between calls. A problem with a
+/// semidefinite approximation of its Hessian (`use_semidefinite()`, false where it will not) changes to it where the
+/// solver meets negative curvature, one that knows where it is beyond hope (`is_lost(x)`) ends there, `diverged`. `x`
+/// is the best point on return whatever the status. Stalls, rather than fails or goes on for ever, where rounding stops
+/// progress above the tolerance.
+template <SmoothProblem P, class Solver>
+[[nodiscard]] NewtonReport<typename P::Scalar> minimise(P& problem, Values<typename P::Scalar>& x, Solver& solver,
                                                         const NewtonOptions<typename P::Scalar>& options) {
     using Scalar = typename P::Scalar;
     constexpr Scalar epsilon = std::numeric_limits<Scalar>::epsilon();
@@ -49,10 +54,13 @@ template <SmoothProblem P>
     Values<Scalar> step;
     Values<Scalar> trial;
     Values<Scalar> trial_gradient(x.size());
-    Scalar noise = 0;
-    if constexpr (requires { problem.energy_rounding(); }) {
-        noise = problem.energy_rounding();
-    }
+    const auto noise = [&] { // at the coordinates last used
+        if constexpr (requires { problem.energy_rounding(); }) {
+            return problem.energy_rounding();
+        } else {
+            return Scalar(0);
+        }
+    };
     const auto largest = [](const Values<Scalar>& values) {
         return values.size() > 0 ? values.template lpNorm<Eigen::Infinity>() : Scalar(0);
     };
@@ -64,17 +72,30 @@ template <SmoothProblem P>
         report.status = Status::diverged;
         return report;
     }
+    const Scalar loosest = std::max(options.loose_tolerance, options.linear_tolerance);
+    Scalar linear_tolerance = loosest;
+    int n_creeping = 0; // steps in a row within the energy's rounding that hardly lowered the gradient
     for (; report.iterations < options.max_iterations; ++report.iterations) {
         if (report.gradient_max <= options.gradient_tolerance) {
             report.status = Status::converged;
             return report;
         }
-        if (!solver.solve(problem.hessian(x), -gradient, step, options.linear_tolerance)) {
+        if constexpr (requires { solver.turn(problem.positions(x)); }) {
+            solver.turn(problem.positions(x));
+        }
+        const auto solve = [&] { return solver.solve(problem.hessian(x), -gradient, step, linear_tolerance); };
+        bool solved = solve();
+        if constexpr (requires { problem.use_semidefinite() && solver.met_negative_curvature(); }) {
+            if (solved && solver.met_negative_curvature() && problem.use_semidefinite()) {
+                solved = solve();
+            }
+        }
+        if (!solved) {
             report.status = Status::failed;
             return report;
         }
         const Scalar slope = gradient.dot(step);
-        const Scalar rounding = std::max(noise, 16 * epsilon * std::max(std::abs(report.energy), std::abs(slope)));
+        const Scalar rounding = std::max(noise(), 16 * epsilon * std::max(std::abs(report.energy), std::abs(slope)));
         Scalar length = 1;
         bool accepted = false;
         for (int halving = 0; halving < 40 && slope < 0; ++halving, length /= 2) {
@@ -83,8 +104,8 @@ template <SmoothProblem P>
             if (!std::isfinite(energy)) {
                 continue;
             }
-            const bool falls = energy <= report.energy + Scalar(1e-4) * length * slope;
             const bool unresolved = std::abs(energy - report.energy) <= rounding;
+            const bool falls = !unresolved && energy <= report.energy + Scalar(1e-4) * length * slope;
             if (!falls && !unresolved) {
                 continue;
             }
@@ -92,6 +113,9 @@ template <SmoothProblem P>
             const Scalar trial_max = largest(trial_gradient);
             if (std::isfinite(trial_max) && (falls || trial_max < report.gradient_max)) {
                 accepted = true;
+                n_creeping = !falls && trial_max > report.gradient_max / 2 ? n_creeping + 1 : 0;
+                const Scalar ratio = trial_max / report.gradient_max;
+                linear_tolerance = std::clamp(ratio * ratio, options.linear_tolerance, loosest);
                 report.energy = energy;
                 report.gradient_max = trial_max;
                 x.swap(trial);
@@ -99,8 +123,20 @@ template <SmoothProblem P>
                 break;
             }
         }
-        if (!accepted) {
-            report.status = Status::stalled;
+        if constexpr (requires { problem.is_lost(x); }) {
+            if (accepted && problem.is_lost(x)) {
+                ++report.iterations;
+                report.status = Status::diverged;
+                return report;
+            }
+        }
+        if (!accepted && linear_tolerance > options.linear_tolerance) {
+            linear_tolerance = options.linear_tolerance;
+            continue;
+        }
+        if (!accepted || n_creeping == 3) {
+            report.status = report.gradient_max <= options.gradient_tolerance ? Status::converged : Status::stalled;
+            report.iterations += accepted ? 1 : 0;
             return report;
         }
     }

@@ -6,7 +6,7 @@
 
 #include <Eigen/SparseCholesky>
 
-#include <springfit/solve/symmetric_matrix.hpp>
+#include <springfit/solve/conjugate_gradients.hpp>
 
 namespace springfit {
 
@@ -46,17 +46,16 @@ public:
         if (m_factorised && m_max_cg_iterations > 0 &&
             conjugate_gradients(a, b, x, tolerance, m_max_cg_iterations,
                                 [&](const Values<Scalar>& r, Values<Scalar>& z) { z = apply_factor(r); }) ==
-                Outcome::solved) {
+                CgOutcome::solved) {
             return true;
         }
         m_factorised = false; // too far away by now
         if (m_max_diagonal_iterations > 0) {
-            const Values<Scalar> inverse =
-                a.diagonal().unaryExpr([](Scalar d) { return d > 0 ? 1 / d : Scalar(1); });
-            const auto outcome = conjugate_gradients(
-                a, b, x, tolerance, m_max_diagonal_iterations,
-                [&](const Values<Scalar>& r, Values<Scalar>& z) { z = inverse.cwiseProduct(r); });
-            if (outcome == Outcome::solved || (outcome == Outcome::indefinite && b.dot(x) > 0)) {
+            const Values<Scalar> inverse = a.diagonal().unaryExpr([](Scalar d) { return d > 0 ? 1 / d : Scalar(1); });
+            const auto outcome =
+                conjugate_gradients(a, b, x, tolerance, m_max_diagonal_iterations,
+                                    [&](const Values<Scalar>& r, Values<Scalar>& z) { z = inverse.cwiseProduct(r); });
+            if (outcome == CgOutcome::solved || (outcome == CgOutcome::indefinite && b.dot(x) > 0)) {
                 return true;
             }
         }
@@ -116,39 +115,6 @@ public:
     [[nodiscard]] int n_factorisations() const { return m_n_factorisations; }
 
 private:
-    enum class Outcome { solved, slow, indefinite };
-
-    template <class Preconditioner>
-    static Outcome conjugate_gradients(const SymmetricMatrix<Scalar>& a, const Values<Scalar>& b, Values<Scalar>& x,
-                                       Scalar tolerance, int max_iterations, const Preconditioner& precondition) {
-        const Scalar goal = tolerance * b.norm();
-        x = Values<Scalar>::Zero(b.size());
-        Values<Scalar> residual = b;
-        Values<Scalar> z(b.size());
-        Values<Scalar> product(b.size());
-        precondition(residual, z);
-        Values<Scalar> direction = z;
-        Scalar rz = residual.dot(z);
-        for (int iteration = 0; iteration < max_iterations; ++iteration) {
-            if (residual.norm() <= goal) {
-                return Outcome::solved;
-            }
-            a.multiply(direction, product);
-            const Scalar curvature = direction.dot(product);
-            if (!(curvature > 0)) { // not positive definite (or not finite)
-                return Outcome::indefinite;
-            }
-            const Scalar alpha = rz / curvature;
-            x += alpha * direction;
-            residual -= alpha * product;
-            precondition(residual, z);
-            const Scalar rz_next = residual.dot(z);
-            direction = z + (rz_next / rz) * direction;
-            rz = rz_next;
-        }
-        return residual.norm() <= goal ? Outcome::solved : Outcome::slow;
-    }
-
     /// Lower triangle of the matrix with one more unknown per rank-one term. Its pattern depends on that of `a` alone.
     static void extend(const SymmetricMatrix<Scalar>& a, SparseMatrix<Scalar>& extended) {
         const Index n = a.size();
@@ -162,8 +128,7 @@ private:
                 extended.insertBack(entry.row(), i) = entry.value();
             }
             for (typename SparseMatrix<Scalar>::InnerIterator entry(rows, i); entry; ++entry) {
-                extended.insertBack(n + entry.row(), i) =
-                    entry.value() * std::sqrt(std::abs(a.weight(entry.row())));
+                extended.insertBack(n + entry.row(), i) = entry.value() * std::sqrt(std::abs(a.weight(entry.row())));
             }
         }
         for (Index p = 0; p < terms; ++p) {

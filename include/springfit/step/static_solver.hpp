@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+
 #include <springfit/step/equilibrium.hpp>
 
 namespace springfit {
@@ -19,10 +21,15 @@ public:
     [[nodiscard]] const Values<Scalar>& masses() const { return m_network.mass; }
 
     /// The positions `[Dim x n_nodes]` that `equilibrium` ends with, whether it is stable or not.
-    Status balance(const Scenario<Dim, Scalar>& scenario, Scalar time, Points<Dim, Scalar>& positions) const {
+    /// What the clamps determine is kept while the same nodes are clamped.
+    Status balance(const Scenario<Dim, Scalar>& scenario, Scalar time, Points<Dim, Scalar>& positions) {
         EquilibriumOptions<Dim, Scalar> options;
         options.time = time;
-        auto found = equilibrium(m_network, scenario, options);
+        use_clamps(scenario);
+        if (!m_springs) {
+            m_springs.emplace(m_network, m_clamped);
+        }
+        auto found = detail::equilibrium(*m_springs, scenario, options, false);
         positions = std::move(found.positions);
         return found.status;
     }
@@ -31,8 +38,8 @@ public:
     /// `[Dim x n_nodes]`, m. The factorisation is kept while the same nodes are clamped. A flat network in space
     /// answers loads in its plane. Status `failed` where the springs do not resist the loads.
     Status linear_response(const Scenario<Dim, Scalar>& scenario, Scalar time, Points<Dim, Scalar>& displacement) {
-        validate(scenario, m_network.n_nodes());
-        use_clamps(clamped_nodes(scenario, m_network.n_nodes()));
+        use_clamps(scenario);
+        prepare_linear();
         const Points<Dim, Scalar>& rest = m_network.rest_positions;
         Points<Dim, Scalar> moved = rest;
         apply_clamps<Dim, Scalar>(scenario, rest, time, moved);
@@ -63,11 +70,21 @@ public:
     }
 
 private:
-    void use_clamps(std::vector<int> clamped) {
-        if (m_full.matrix().cols() > 0 && clamped == m_clamped) {
+    void use_clamps(const Scenario<Dim, Scalar>& scenario) {
+        validate(scenario, m_network.n_nodes());
+        std::vector<int> clamped = clamped_nodes(scenario, m_network.n_nodes());
+        if (clamped != m_clamped) {
+            m_clamped = std::move(clamped);
+            m_springs.reset();
+            m_is_linear_ready = false;
+        }
+    }
+
+    void prepare_linear() {
+        if (m_is_linear_ready) {
             return;
         }
-        m_clamped = std::move(clamped);
+        m_is_linear_ready = true;
         m_free = FreeNodes(m_network.n_nodes(), m_clamped);
         m_full = spring_matrix(m_network, FreeNodes(m_network.n_nodes(), {}));
         add_stiffness<Dim, Scalar>(m_network, m_network.rest_positions, Curvature::exact, m_full);
@@ -84,6 +101,8 @@ private:
 
     SpringNetwork<Dim, Scalar> m_network;
     std::vector<int> m_clamped;
+    std::optional<detail::HeldSprings<Dim, Scalar>> m_springs; ///< of m_network, for `balance`
+    bool m_is_linear_ready = false;                            ///< the rest is of the present clamps
     FreeNodes m_free;
     CliqueMatrix<Dim, Scalar> m_full; ///< stiffness of all nodes at rest
     CliqueMatrix<Dim, Scalar> m_held; ///< of the free ones

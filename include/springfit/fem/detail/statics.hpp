@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <type_traits>
+#include <utility>
 
 #include <springfit/fem/statics.hpp>
 
@@ -22,6 +24,48 @@ Scalar force_rounding(const SymmetricMatrix<Scalar>& stiffness, const Points<Dim
            x.cwiseAbs().maxCoeff();
 }
 
+/// Pairs of nodes that share a cell, each once `[2 x n_pairs]`.
+template <class CellNodes>
+NodePairs pairs_in_cells(const CellNodes& cells) {
+    std::vector<std::pair<int, int>> pairs;
+    pairs.reserve(static_cast<std::size_t>(cells.cols() * cells.rows() * (cells.rows() - 1) / 2));
+    for (Index c = 0; c < cells.cols(); ++c) {
+        for (Index b = 1; b < cells.rows(); ++b) {
+            for (Index a = 0; a < b; ++a) {
+                pairs.push_back(std::minmax<int>({cells(a, c), cells(b, c)}));
+            }
+        }
+    }
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    NodePairs result(2, static_cast<Index>(pairs.size()));
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+        result.col(static_cast<Index>(p)) << pairs[p].first, pairs[p].second;
+    }
+    return result;
+}
+
+/// The factor of the model's stiffness at rest, with Poisson's ratio at most 0.4 and the dilatation of each point on
+/// its own: patches would fill it, and the plain elements' is as good a preconditioner. Membranes, whose stiffness is
+/// singular where they are flat, have none.
+template <class M>
+TurnedFactor<M::dimension, typename M::Scalar> rest_factor(const M& model, const FreeNodes& free) {
+    using Scalar = typename M::Scalar;
+    if constexpr (M::is_membrane) {
+        return {};
+    } else {
+        auto material = model.material();
+        material.poisson = std::min(material.poisson, decltype(material.poisson)(0.4));
+        auto options = model.options();
+        options.dilatation = Dilatation::pointwise;
+        const M plain(model.mesh(), material, model.density(), options);
+        auto stiffness = plain.make_stiffness(free);
+        plain.assemble(plain.rest_positions(), stiffness);
+        return TurnedFactor<M::dimension, Scalar>(stiffness.matrix().lower(), free, pairs_in_cells(model.mesh().cells),
+                                                  model.rest_positions());
+    }
+}
+
 /// The potential energy W(x) - f_ext . (x - x_rest) over the free coordinates: a model of SmoothProblem.
 template <class M>
 class PotentialEnergy {
@@ -33,23 +77,25 @@ public:
     PotentialEnergy(const M& model, const FreeNodes& free)
         : m_model(&model), m_free(free), m_stiffness(model.make_stiffness(free)) {}
 
-    Nodes positions;       ///< of all nodes; the clamped ones stay as set
+    Nodes nodes;           ///< positions of all nodes; the clamped ones stay as set
     Nodes external_forces; ///< on all nodes
 
     [[nodiscard]] Scalar energy(const Values<Scalar>& values) {
-        m_free.scatter(values, positions);
-        return m_model->energy(positions) -
-               external_forces.cwiseProduct(positions - m_model->rest_positions()).sum();
+        m_free.scatter(values, nodes);
+        return m_model->energy(nodes) - external_forces.cwiseProduct(nodes - m_model->rest_positions()).sum();
     }
     [[nodiscard]] Scalar energy_rounding() const { return m_model->energy_rounding(); }
+    /// Where all nodes are for the free coordinates, m.
+    [[nodiscard]] const Nodes& positions(const Values<Scalar>& values) {
+        m_free.scatter(values, nodes);
+        return nodes;
+    }
     void gradient(const Values<Scalar>& values, Values<Scalar>& gradient) {
-        m_free.scatter(values, positions);
-        const Nodes unbalanced = m_model->internal_forces(positions) - external_forces;
+        const Nodes unbalanced = m_model->internal_forces(positions(values)) - external_forces;
         gradient = m_free.template gather<dimension, Scalar>(unbalanced);
     }
     [[nodiscard]] SymmetricMatrix<Scalar> hessian(const Values<Scalar>& values) {
-        m_free.scatter(values, positions);
-        m_model->assemble(positions, m_stiffness);
+        m_model->assemble(positions(values), m_stiffness);
         return m_stiffness.matrix();
     }
 
@@ -62,13 +108,12 @@ private:
 } // namespace detail
 
 template <class M>
-Statics<M>::Statics(M model, const StaticsOptions<Scalar>& options)
-    : m_model(std::move(model)), m_options(options) {
+Statics<M>::Statics(M model, const StaticsOptions<Scalar>& options) : m_model(std::move(model)), m_options(options) {
     require(options.tolerance > 0 && options.tolerance < 1, "tolerance", "a value in (0, 1)", options.tolerance);
     require(options.max_iterations >= 1, "max_iterations", "at least one iteration", options.max_iterations);
     require(options.max_halvings >= 0, "max_halvings", "a number not below 0", options.max_halvings);
     const bool is_plane = !M::is_solid && !M::is_membrane;
-    m_solver.set_max_diagonal_iterations(is_plane ? 0 : detail::diagonal_iterations);
+    m_solver.fallback().set_max_diagonal_iterations(is_plane ? 0 : detail::diagonal_iterations);
 }
 
 template <class M>
@@ -79,7 +124,7 @@ void Statics<M>::use_clamps(const Scenario<dimension, Scalar>& scenario) {
         m_clamped = std::move(clamped);
         m_free = FreeNodes(rest_positions().cols(), m_clamped);
         m_potential.emplace(m_model, m_free);
-        m_solver.reset();
+        m_solver.set_factor(detail::rest_factor(m_model, m_free));
     }
 }
 
@@ -107,6 +152,8 @@ auto Statics<M>::follow_clamps(const Nodes& x, const Nodes& moved) -> Nodes {
     const Values<Scalar> push = -clamp_forces(x, moved - x);
     const Values<Scalar> values = m_free.template gather<dimension, Scalar>(x);
     Values<Scalar> follow;
+    m_solver.restart();
+    m_solver.turn(x);
     if (push.allFinite() && m_solver.solve(m_potential->hessian(values), push, follow, Scalar(1e-3))) {
         Nodes followed = moved;
         m_free.template scatter<dimension, Scalar>(values + follow, followed);
@@ -128,12 +175,13 @@ Status Statics<M>::linear_response(const Scenario<dimension, Scalar>& scenario, 
         return Status::converged;
     }
     const Nodes loads = external_forces<dimension, Scalar>(scenario, masses(), time);
-    const Values<Scalar> push =
-        m_free.template gather<dimension, Scalar>(loads) - clamp_forces(rest, displacement);
-    m_potential->positions = rest;
+    const Values<Scalar> push = m_free.template gather<dimension, Scalar>(loads) - clamp_forces(rest, displacement);
+    m_potential->nodes = rest;
     const auto stiffness = m_potential->hessian(m_free.template gather<dimension, Scalar>(rest));
     Values<Scalar> values;
     Values<Scalar> held(push.size());
+    m_solver.restart();
+    m_solver.turn(rest);
     if (!m_solver.solve(stiffness, push, values, m_options.tolerance)) {
         return Status::failed;
     }
@@ -177,19 +225,21 @@ auto Statics<M>::equilibrium(const Scenario<dimension, Scalar>& scenario, Scalar
     Scalar step = 1;
     for (int halvings = 0; report.load < 1;) {
         const Scalar load = std::min(Scalar(1), report.load + step);
-        m_potential->positions = x;
+        m_potential->nodes = x;
         m_potential->external_forces = load * full_load;
         Nodes trial = follow_clamps(x, x + (load - report.load) * clamps_way);
-        m_potential->positions = trial;
+        m_potential->nodes = trial;
         Values<Scalar> values = m_free.template gather<dimension, Scalar>(trial);
-        const Scalar largest = std::max(full_load.cwiseAbs().maxCoeff(),
-                                        m_model.internal_forces(trial).cwiseAbs().maxCoeff());
+        const Scalar largest =
+            std::max(full_load.cwiseAbs().maxCoeff(), m_model.internal_forces(trial).cwiseAbs().maxCoeff());
         NewtonOptions<Scalar> newton{.max_iterations = m_options.max_iterations};
         newton.linear_tolerance = Scalar(1e-3);
+        newton.loose_tolerance = Scalar(0.1);
+        m_solver.restart();
         newton.gradient_tolerance = m_options.tolerance * largest;
         if (std::isfinite(largest)) {
-            newton.gradient_tolerance = std::max(newton.gradient_tolerance,
-                                                 detail::force_rounding(m_potential->hessian(values), trial));
+            newton.gradient_tolerance =
+                std::max(newton.gradient_tolerance, detail::force_rounding(m_potential->hessian(values), trial));
         }
         const auto solved = minimise(*m_potential, values, m_solver, newton);
         report.iterations += solved.iterations;

@@ -99,8 +99,18 @@ inline void OutputGroup::write(const std::filesystem::path& target, std::string_
     }
 }
 
+inline void OutputGroup::remove(const std::filesystem::path& target) {
+    for (const File& file : m_files) {
+        require(file.target != target, "output file", "a name that is not in the group yet", target.string());
+    }
+    m_files.push_back({target, {}, {}, false});
+}
+
 inline void OutputGroup::flush() const {
     for (const File& file : m_files) {
+        if (file.temporary.empty()) {
+            continue;
+        }
         const detail::Descriptor descriptor(file.temporary, O_RDONLY);
         if (!descriptor.is_open() || ::fsync(descriptor.get()) != 0) {
             throw FileError(file.target.string(), text("cannot be written: ", detail::reason(errno)));
@@ -130,7 +140,9 @@ inline void OutputGroup::commit() {
         flush();
         for (File& file : m_files) {
             back_up(file);
-            if (::rename(file.temporary.c_str(), file.target.c_str()) != 0) {
+            const bool removes = file.temporary.empty();
+            if (removes ? ::unlink(file.target.c_str()) != 0 && errno != ENOENT
+                        : ::rename(file.temporary.c_str(), file.target.c_str()) != 0) {
                 throw FileError(file.target.string(), text("cannot be written: ", detail::reason(errno)));
             }
             file.renamed = true;
@@ -167,7 +179,7 @@ inline void OutputGroup::roll_back() noexcept {
 
 inline void OutputGroup::discard() noexcept {
     for (const File& file : m_files) {
-        if (!file.renamed) {
+        if (!file.renamed && !file.temporary.empty()) {
             ::unlink(file.temporary.c_str());
         }
     }

@@ -12,8 +12,9 @@ namespace springfit::detail {
 ///
 /// with w = 1 / h^2 and d = 1 / h, n_e taken at the old positions; w = d = 0 leaves the equilibrium.
 ///
-/// Its Hessian is the semidefinite one far from the minimum, where compressed springs make the exact one indefinite and
-/// a shifted Newton step poor, and the exact one, which converges quadratically, where the gradient has become small.
+/// Its Hessian is the exact one, which converges quadratically, where the gradient has become small. Far from the
+/// minimum, compressed springs make it indefinite and a Newton step along it poor: there it is the semidefinite one, at
+/// once or, from `start_exact()` on, as soon as the solver meets negative curvature.
 template <int Dim, std::floating_point ScalarType>
 class SpringPotential {
 public:
@@ -59,6 +60,30 @@ public:
     /// The Hessian is exact where no entry of the gradient exceeds this, N.
     void set_exact_below(Scalar gradient) { m_exact_below = gradient; }
 
+    /// The Hessian is exact until `use_semidefinite()`.
+    void start_exact() { m_is_semidefinite = false; }
+
+    /// Takes the semidefinite Hessian far from the minimum; false where it is in use already or the minimum is near.
+    [[nodiscard]] bool use_semidefinite() {
+        const bool changes = !m_is_semidefinite && !m_is_near;
+        m_is_semidefinite = m_is_semidefinite || changes;
+        return changes;
+    }
+
+    /// A node farther than this from where `set_statics` found it is lost, m.
+    void set_reach(Scalar reach) { m_reach = reach; }
+
+    /// Nothing holds the network: a node has gone out of reach.
+    [[nodiscard]] bool is_lost(const Values<Scalar>& x) {
+        return !((positions(x) - m_target).cwiseAbs().maxCoeff() <= m_reach);
+    }
+
+    /// Where all nodes are for the free coordinates x, m.
+    [[nodiscard]] const Points<Dim, Scalar>& positions(const Values<Scalar>& x) {
+        free_nodes().template scatter<Dim, Scalar>(x, m_points);
+        return m_points;
+    }
+
     [[nodiscard]] Scalar energy(const Values<Scalar>& x) {
         free_nodes().template scatter<Dim, Scalar>(x, m_points);
         Scalar energy = elastic_energy<Dim, Scalar>(*m_network, m_points);
@@ -95,7 +120,9 @@ public:
         free_nodes().template scatter<Dim, Scalar>(x, m_points);
         m_matrix.set_zero();
         add_stiffness<Dim, Scalar>(*m_network, m_points,
-                                   m_is_near ? Curvature::exact : Curvature::positive_semidefinite, m_matrix);
+                                   m_is_near || !m_is_semidefinite ? Curvature::exact
+                                                                   : Curvature::positive_semidefinite,
+                                   m_matrix);
         for (Index e = 0; m_damping > 0 && e < m_network->n_springs(); ++e) {
             add_spring_block<Dim, Scalar>(
                 m_matrix, e, m_damping * m_network->damping(e) * m_directions.col(e) * m_directions.col(e).transpose());
@@ -167,7 +194,9 @@ private:
     Scalar m_damping = 0;
     Scalar m_floor = 0;
     Scalar m_exact_below = 0;
+    Scalar m_reach = std::numeric_limits<Scalar>::infinity();
     bool m_is_near = false;
+    bool m_is_semidefinite = true; ///< far from the minimum
     Points<Dim, Scalar> m_points; ///< all nodes; the free ones at the x last asked for
     Points<Dim, Scalar> m_target;
     Points<Dim, Scalar> m_forces;

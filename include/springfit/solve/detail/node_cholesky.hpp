@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <limits>
+#include <vector>
+
+#include <Eigen/SparseCholesky>
+
+#include <springfit/core/types.hpp>
+
+namespace springfit::detail {
+
+/// Cholesky factor L L' of a symmetric positive definite matrix whose unknowns come in groups of `Dim`, one per node,
+/// all coupled or not coupled at all. Kept as dense blocks in single precision, which is a third of the memory that a
+/// triangular solve has to read otherwise: for preconditioners. Immutable once made.
+template <int Dim, std::floating_point Scalar>
+class NodeCholesky {
+public:
+    NodeCholesky() = default;
+
+    /// Factorises a matrix given by its lower triangle, in double or single precision as it comes.
+    explicit NodeCholesky(const SparseMatrix<Scalar>& lower) {
+        find_order(lower);
+        Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> place(lower.cols());
+        for (std::size_t p = 0; p < m_order.size(); ++p) {
+            for (int d = 0; d < Dim; ++d) {
+                place.indices()(Dim * m_order[p] + d) = Dim * static_cast<int>(p) + d;
+            }
+        }
+        SparseMatrix<Scalar> ordered(lower.rows(), lower.cols());
+        ordered.template selfadjointView<Eigen::Lower>() =
+            lower.template selfadjointView<Eigen::Lower>().twistedBy(place);
+        const Eigen::SimplicialLLT<SparseMatrix<Scalar>, Eigen::Lower, Eigen::NaturalOrdering<int>> factor(ordered);
+        if (factor.info() == Eigen::Success && is_clear(factor.matrixL().nestedExpression(), ordered)) {
+            take_blocks(factor.matrixL().nestedExpression());
+            m_is_usable = true;
+        }
+    }
+
+    /// False where the matrix is not positive definite by a margin above rounding; then nothing else may be called.
+    [[nodiscard]] bool is_usable() const { return m_is_usable; }
+
+    /// Unknowns of one node, padded for vector instructions; the padding of `work` must be 0 and stays so.
+    static constexpr int stride = Dim == 3 ? 4 : 2;
+    using Work = Eigen::Matrix<Scalar, stride, Eigen::Dynamic>; ///< one column per node, in the order of elimination
+
+    /// The node at each place in the order of elimination.
+    [[nodiscard]] const std::vector<int>& order() const { return m_order; }
+
+    /// work becomes (L L')^-1 work. O(entries of L).
+    void solve(Work& work) const {
+        Scalar* const rows = work.data();
+        const int n = static_cast<int>(m_order.size());
+        for (int c = 0; c < n; ++c) {
+            Scalar* const own = rows + stride * c;
+            std::array<Scalar, Dim> x{};
+            const Corner& inverse = m_corners[static_cast<std::size_t>(c)];
+            for (int d = 0; d < Dim; ++d) {
+                for (int e = 0; e <= d; ++e) {
+                    x[d] += inverse(d, e) * own[e];
+                }
+            }
+            for (int d = 0; d < Dim; ++d) {
+                own[d] = x[d];
+            }
+            for (int b = m_begin[c]; b < m_begin[c + 1]; ++b) {
+                const float* const block = m_blocks.data() + Dim * stride * static_cast<std::size_t>(b);
+                Scalar* const other = rows + stride * m_rows[b];
+                for (int r = 0; r < stride; ++r) {
+                    Scalar sum = other[r];
+                    for (int d = 0; d < Dim; ++d) {
+                        sum -= static_cast<Scalar>(block[stride * d + r]) * x[d];
+                    }
+                    other[r] = sum;
+                }
+            }
+        }
+        for (int c = n; c-- > 0;) {
+            std::array<std::array<Scalar, stride>, Dim> sums{};
+            for (int b = m_begin[c]; b < m_begin[c + 1]; ++b) {
+                const float* const block = m_blocks.data() + Dim * stride * static_cast<std::size_t>(b);
+                const Scalar* const other = rows + stride * m_rows[b];
+                for (int d = 0; d < Dim; ++d) {
+                    for (int r = 0; r < stride; ++r) {
+                        sums[d][r] += static_cast<Scalar>(block[stride * d + r]) * other[r];
+                    }
+                }
+            }
+            Scalar* const own = rows + stride * c;
+            std::array<Scalar, Dim> y{};
+            for (int d = 0; d < Dim; ++d) {
+                y[d] = own[d];
+                for (int r = 0; r < stride; ++r) {
+                    y[d] -= sums[d][r];
+                }
+            }
+            const Corner& inverse = m_corners[static_cast<std::size_t>(c)];
+            for (int d = 0; d < Dim; ++d) {
+                own[d] = 0;
+                for (int e = d; e < Dim; ++e) {
+                    own[d] += inverse(e, d) * y[e];
+                }
+            }
+        }
+    }
+
+private:
+    using Corner = Eigen::Matrix<Scalar, Dim, Dim>;
+
+    /// Minimum degree on the graph of the nodes.
+    void find_order(const SparseMatrix<Scalar>& lower) {
+        const Index n = lower.cols() / Dim;
+        std::vector<Eigen::Triplet<Scalar>> entries;
+        for (Index c = 0; c < n; ++c) {
+            for (typename SparseMatrix<Scalar>::InnerIterator entry(lower, Dim * c); entry; ++entry) {
+                if (entry.row() % Dim == 0) {
+                    entries.emplace_back(static_cast<int>(entry.row() / Dim), static_cast<int>(c), Scalar(1));
+                }
+            }
+        }
+        SparseMatrix<Scalar> graph(n, n);
+        graph.setFromTriplets(entries.begin(), entries.end());
+        Eigen::AMDOrdering<int>::PermutationType order;
+        Eigen::AMDOrdering<int>()(graph.template selfadjointView<Eigen::Lower>(), order);
+        m_order.assign(order.indices().data(), order.indices().data() + n);
+    }
+
+    static bool is_clear(const SparseMatrix<Scalar>& l, const SparseMatrix<Scalar>& lower) {
+        for (Index c = 0; c < lower.cols(); ++c) {
+            const Scalar pivot = l.valuePtr()[l.outerIndexPtr()[c]];
+            const Scalar diagonal = lower.valuePtr()[lower.outerIndexPtr()[c]];
+            if (!(pivot * pivot > 1000 * std::numeric_limits<Scalar>::epsilon() * diagonal)) {
+                return false;
+            }
+        }
+        return true;
+    }
+
+    void take_blocks(const SparseMatrix<Scalar>& l) {
+        const Index n = l.cols() / Dim;
+        m_begin.assign(1, 0);
+        m_corners.resize(static_cast<std::size_t>(n), Corner::Zero());
+        for (Index c = 0; c < n; ++c) {
+            Corner corner = Corner::Zero();
+            std::size_t first = m_blocks.size();
+            for (int d = 0; d < Dim; ++d) {
+                std::size_t block = first;
+                for (typename SparseMatrix<Scalar>::InnerIterator entry(l, Dim * c + d); entry; ++entry) {
+                    const Index r = entry.row() % Dim;
+                    if (entry.row() / Dim == c) {
+                        corner(r, d) = entry.value();
+                        continue;
+                    }
+                    if (d == 0 && r == 0) {
+                        m_rows.push_back(static_cast<int>(entry.row() / Dim));
+                        m_blocks.resize(m_blocks.size() + Dim * stride, 0.F);
+                    }
+                    m_blocks[block + static_cast<std::size_t>(stride * d + r)] = static_cast<float>(entry.value());
+                    block += r == Dim - 1 ? Dim * stride : 0;
+                }
+            }
+            m_begin.push_back(static_cast<int>(m_rows.size()));
+            m_corners[static_cast<std::size_t>(c)] =
+                corner.template triangularView<Eigen::Lower>().solve(Corner::Identity());
+        }
+    }
+
+    bool m_is_usable = false;
+    std::vector<int> m_order;
+    std::vector<int> m_begin;      ///< of each node's blocks below the diagonal
+    std::vector<int> m_rows;       ///< place of the node in each block's rows
+    std::vector<float> m_blocks;   ///< `stride` values per column of a block
+    std::vector<Corner> m_corners; ///< inverses of the blocks on the diagonal
+};
+
+} // namespace springfit::detail

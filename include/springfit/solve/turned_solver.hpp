@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <springfit/solve/symmetric_solver.hpp>
+#include <springfit/solve/turned_factor.hpp>
+
+namespace springfit {
+
+/// Solves A x = b for the tangent stiffnesses of one body in the states that a minimisation goes through: conjugate
+/// gradients with the turned factor of the body at rest. Where they are slow, as far from the rest shape, or where
+/// there is no such factor, the linear systems are left to a `SymmetricSolver`.
+template <int Dim, std::floating_point Scalar>
+class TurnedSolver {
+public:
+    /// For another pattern of matrices; forgets all of the one before.
+    void set_factor(TurnedFactor<Dim, Scalar> factor) {
+        m_factor = std::move(factor);
+        m_fallback.reset();
+        m_n_slow = 0;
+    }
+
+    /// What solves where the turned factor does not serve.
+    [[nodiscard]] SymmetricSolver<Scalar>& fallback() { return m_fallback; }
+
+    /// Gives the turned factor another chance, for a new minimisation.
+    void restart() { m_n_slow = 0; }
+
+    /// The shape that the next matrix is of, positions `[Dim x n_nodes]`.
+    void turn(const Points<Dim, Scalar>& x) {
+        if (m_factor.is_usable()) {
+            m_factor.turn(x);
+        }
+    }
+
+    /// The solution to a relative residual of `tolerance`. For a matrix that is not positive definite, the iterate
+    /// before the negative curvature or, from the fallback, the solution of a shifted one: both go downhill for
+    /// b = -gradient. False where none could be had.
+    [[nodiscard]] bool solve(const SymmetricMatrix<Scalar>& a, const Values<Scalar>& b, Values<Scalar>& x,
+                             Scalar tolerance) {
+        m_met_negative_curvature = false;
+        if (m_factor.is_usable() && m_n_slow < 2) {
+            const auto outcome =
+                conjugate_gradients(a, b, x, tolerance, max_iterations,
+                                    [&](const Values<Scalar>& r, Values<Scalar>& z) { m_factor.apply(r, z); });
+            if (outcome == CgOutcome::solved) {
+                m_n_slow = 0;
+                return true;
+            }
+            if (outcome == CgOutcome::indefinite) {
+                m_met_negative_curvature = true;
+                if (!(b.dot(x) > 0)) { // at the first iteration
+                    m_factor.apply(b, x);
+                }
+                if (x.allFinite()) {
+                    return true;
+                }
+            }
+            ++m_n_slow;
+        }
+        return m_fallback.solve(a, b, x, tolerance);
+    }
+
+    /// The last matrix was not positive definite along a direction that conjugate gradients took.
+    [[nodiscard]] bool met_negative_curvature() const { return m_met_negative_curvature; }
+
+private:
+    static constexpr int max_iterations = 150; ///< cost less than a factorisation of a solid
+
+    TurnedFactor<Dim, Scalar> m_factor;
+    SymmetricSolver<Scalar> m_fallback;
+    int m_n_slow = 0; ///< solves in a row that the turned factor was too slow for
+    bool m_met_negative_curvature = false;
+};
+
+} // namespace springfit

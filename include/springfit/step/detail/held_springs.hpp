@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <limits>
+
+#include <springfit/solve/turned_solver.hpp>
+#include <springfit/step/detail/spring_potential.hpp>
+
+namespace springfit::detail {
+
+/// Added to the diagonal of the Hessian, relative to its largest entry, where no spring may hold a node.
+inline constexpr double statics_floor = 1e-9;
+
+/// What the equilibria of a network under the same clamps have in common: the pattern of the stiffness and its factor
+/// at rest. Immutable, so threads may share it. Keeps a reference to the network.
+template <int Dim, std::floating_point Scalar>
+class HeldSprings {
+public:
+    HeldSprings(const SpringNetwork<Dim, Scalar>& network, const std::vector<int>& clamped)
+        : m_network(network), m_potential(network, FreeNodes(network.n_nodes(), clamped)) {
+        const Points<Dim, Scalar> unloaded = Points<Dim, Scalar>::Zero(Dim, network.n_nodes());
+        auto at_rest = m_potential;
+        at_rest.set_statics(network, network.rest_positions, unloaded, Scalar(statics_floor));
+        const Values<Scalar> x = free_nodes().template gather<Dim, Scalar>(network.rest_positions);
+        for (const auto curvature : {Curvature::exact, Curvature::positive_semidefinite}) {
+            at_rest.set_exact_below(curvature == Curvature::exact ? std::numeric_limits<Scalar>::infinity()
+                                                                  : Scalar(-1));
+            Values<Scalar> gradient(x.size());
+            at_rest.gradient(x, gradient);
+            m_factor =
+                TurnedFactor<Dim, Scalar>(at_rest.hessian(x), free_nodes(), network.springs, network.rest_positions);
+            if (m_factor.is_usable()) {
+                return;
+            }
+        }
+    }
+
+    [[nodiscard]] const SpringNetwork<Dim, Scalar>& network() const { return m_network; }
+    [[nodiscard]] const FreeNodes& free_nodes() const { return m_potential.free_nodes(); }
+    /// To copy: its pattern is made, its forces are not set.
+    [[nodiscard]] const SpringPotential<Dim, Scalar>& potential() const { return m_potential; }
+    /// Of the stiffness at rest; not usable where the springs do not hold the rest shape.
+    [[nodiscard]] const TurnedFactor<Dim, Scalar>& factor() const { return m_factor; }
+
+private:
+    const SpringNetwork<Dim, Scalar>& m_network;
+    SpringPotential<Dim, Scalar> m_potential;
+    TurnedFactor<Dim, Scalar> m_factor;
+};
+
+} // namespace springfit::detail
