@@ -6,7 +6,7 @@
 
 #include <springfit/fit/acceleration_objective.hpp>
 #include <springfit/fit/dominant_term.hpp>
-#include <springfit/ipopt/exact.hpp>
+#include <springfit/fit/exact.hpp>
 #include <springfit/motion/load_kinds.hpp>
 #include <springfit/network/damping.hpp>
 #include <springfit/network/forces.hpp>
@@ -124,7 +124,7 @@ std::vector<Candidate<Dim>> make_candidates(const Discretisation<Dim>& body, con
                     objective.add(motion);
                 }
             }
-            return objective.problem();
+            return std::move(objective).problem();
         }();
         const auto add = [&](const std::string& name, const auto& solve) {
             Stage stage("fit " + name);
@@ -152,9 +152,10 @@ std::vector<Candidate<Dim>> make_candidates(const Discretisation<Dim>& body, con
         }
         if ((options.method == "auto" || options.method == "exact") && !interrupted()) {
             add("exact", [&](const ProgressCallback& progress) {
-                ipopt::ExactOptions exact;
+                ExactOptions exact;
+                exact.execution = execution;
                 exact.progress = progress;
-                return ipopt::exact(problem, exact);
+                return springfit::exact(problem, exact);
             });
         }
     }

@@ -96,7 +96,10 @@ public:
     }
 
     /// The quadratic of all frames so far, with bounds; more frames may follow.
-    [[nodiscard]] FitProblem problem();
+    [[nodiscard]] FitProblem problem() &;
+
+    /// The same from an objective that is not needed any more, whose memory the problem takes over.
+    [[nodiscard]] FitProblem problem() &&;
 
 private:
     static constexpr Index nodes_per_chunk = 64;
@@ -144,6 +147,7 @@ private:
     void index_springs(const SpringNetwork<Dim, Scalar>& network);
     void flush();
     void add_node(Index node, Eigen::Matrix<double, detail::FrameBatch<Dim, Scalar>::rows, Eigen::Dynamic>& equations);
+    [[nodiscard]] FitProblem take_problem(std::vector<double> gram);
     void identify(FitProblem& problem) const;
 
     AccelerationOptions<Scalar> m_options;
@@ -176,7 +180,7 @@ template <int Dim, std::floating_point Scalar>
     for (const auto& motion : motions) {
         objective.add(motion);
     }
-    return objective.problem();
+    return std::move(objective).problem();
 }
 
 } // namespace springfit

@@ -44,6 +44,28 @@ public:
     explicit NodeQuadratic(Index n_unknowns)
         : m_ridge(Values<double>::Zero(n_unknowns)), m_centre(Values<double>::Zero(n_unknowns)) {}
 
+    /// Many terms, one after another.
+    struct Terms {
+        std::vector<int> node, size;  ///< per term: number of its node, and of its unknowns
+        std::vector<double> constant; ///< per term
+        std::vector<int> columns;     ///< unknowns of all terms, ascending in each
+        std::vector<double> hessian;  ///< their packed lower triangles
+        std::vector<double> linear;   ///< g_i, beside `columns`
+    };
+
+    /// Takes over terms without a copy.
+    NodeQuadratic(Index n_unknowns, Terms terms) : NodeQuadratic(n_unknowns) {
+        for (const int n : terms.size) {
+            m_column_begin.push_back(m_column_begin.back() + n);
+            m_hessian_begin.push_back(m_hessian_begin.back() + Index(n) * (n + 1) / 2);
+        }
+        m_node = std::move(terms.node);
+        m_constant = std::move(terms.constant);
+        m_columns = std::move(terms.columns);
+        m_hessian = std::move(terms.hessian);
+        m_linear = std::move(terms.linear);
+    }
+
     /// Appends a term; `hessian` is the packed lower triangle in the order of `columns`, which ascend.
     void add_term(int node, std::span<const int> columns, std::span<const double> hessian,
                   std::span<const double> linear, double constant) {

@@ -48,7 +48,8 @@ private:
         [[nodiscard]] Index below() const { return n_rows() - width; }
     };
 
-    /// Per column of L, in the order of elimination: the first row below its diagonal (-1: none), and its number of rows.
+    /// Per column of L, in the order of elimination: the first row below its diagonal (-1: none), and its number of
+    /// rows.
     struct Tree {
         std::vector<int> parent, count;
     };

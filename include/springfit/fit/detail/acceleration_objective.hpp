@@ -163,8 +163,23 @@ void AccelerationObjective<Dim, Scalar>::add_node(
 
 template <int Dim, std::floating_point Scalar>
     requires SpatialDimension<Dim>
-FitProblem AccelerationObjective<Dim, Scalar>::problem() {
+FitProblem AccelerationObjective<Dim, Scalar>::problem() & {
     flush();
+    return take_problem(m_gram);
+}
+
+template <int Dim, std::floating_point Scalar>
+    requires SpatialDimension<Dim>
+FitProblem AccelerationObjective<Dim, Scalar>::problem() && {
+    flush();
+    m_batch = {};
+    return take_problem(std::move(m_gram));
+}
+
+/// Turns the triangles of [A y]'[A y] into the node terms, in place: what goes into a term lies behind where it goes.
+template <int Dim, std::floating_point Scalar>
+    requires SpatialDimension<Dim>
+FitProblem AccelerationObjective<Dim, Scalar>::take_problem(std::vector<double> gram) {
     std::vector<bool> used(static_cast<std::size_t>(m_parameters.n_unknowns()), false);
     for (std::size_t i = 0; i < m_seen_free.size(); ++i) {
         for (Index c = m_column_begin[i]; m_seen_free[i] && c < m_column_begin[i + 1]; ++c) {
@@ -177,31 +192,33 @@ FitProblem AccelerationObjective<Dim, Scalar>::problem() {
         renumbered[u] = used[u] ? n_used++ : -1;
     }
 
-    FitProblem problem;
-    problem.parameters = m_parameters.subset(used);
-    problem.objective = NodeQuadratic(n_used);
-    std::vector<int> columns;
-    std::vector<double> hessian;
-    std::vector<double> linear;
+    NodeQuadratic::Terms terms;
+    std::size_t to = 0;
     for (std::size_t i = 0; i < m_seen_free.size(); ++i) {
         if (!m_seen_free[i]) {
             continue;
         }
-        columns.clear();
-        hessian.clear();
-        linear.clear();
+        const Index n = m_column_begin[i + 1] - m_column_begin[i];
         for (Index c = m_column_begin[i]; c < m_column_begin[i + 1]; ++c) {
-            columns.push_back(renumbered[static_cast<std::size_t>(m_columns[static_cast<std::size_t>(c)])]);
+            terms.columns.push_back(renumbered[static_cast<std::size_t>(m_columns[static_cast<std::size_t>(c)])]);
         }
-        const double* gram = m_gram.data() + m_gram_begin[i];
-        for (std::size_t p = 0; p < columns.size(); ++p) {
-            for (std::size_t q = p; q < columns.size(); ++q) {
-                hessian.push_back(2 * *gram++);
+        auto from = static_cast<std::size_t>(m_gram_begin[i]);
+        for (Index p = 0; p < n; ++p) {
+            for (Index q = p; q < n; ++q) {
+                gram[to++] = 2 * gram[from++];
             }
-            linear.push_back(2 * *gram++);
+            terms.linear.push_back(2 * gram[from++]);
         }
-        problem.objective.add_term(static_cast<int>(i), columns, hessian, linear, *gram);
+        terms.node.push_back(static_cast<int>(i));
+        terms.size.push_back(static_cast<int>(n));
+        terms.constant.push_back(gram[from]);
     }
+    gram.resize(to);
+    terms.hessian = std::move(gram);
+
+    FitProblem problem;
+    problem.parameters = m_parameters.subset(used);
+    problem.objective = NodeQuadratic(n_used, std::move(terms));
     identify(problem);
     return problem;
 }

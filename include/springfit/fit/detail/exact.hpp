@@ -12,9 +12,8 @@ namespace detail {
 /// Primal-dual active set on one fit problem; between its steps the point is within the bounds.
 class ActiveSet {
 public:
-    /// `patience`: sets without progress before projected Newton steps take over.
-    ActiveSet(const FitProblem& problem, const ExactOptions& options, Values<double> start, int patience)
-        : m_problem(problem), m_options(options), m_patience(patience), m_curvature(problem.objective.curvature()),
+    ActiveSet(const FitProblem& problem, const ExactOptions& options, Values<double> start)
+        : m_problem(problem), m_options(options), m_curvature(problem.objective.curvature()),
           m_linear(problem.objective.linear()), m_theta(std::move(start)),
           m_solver(problem.objective, m_curvature, options.execution, [this] { return go_on(); }) {
         const Index n = problem.n_unknowns();
@@ -44,14 +43,13 @@ public:
                 report.status = Status::interrupted;
                 break;
             }
-            const bool finished = m_monotone ? descend() : solve_and_choose();
-            report.iterations += finished ? 1 : 0;
-            if (!finished) {
-                report.status = m_stopped ? Status::interrupted : Status::stalled;
-            } else {
-                report.status = judge();
-                report.history.push_back(std::max(offset + m_best, 0.));
+            if (!solve_and_choose()) {
+                report.status = Status::interrupted;
+                break;
             }
+            ++report.iterations;
+            report.status = judge();
+            report.history.push_back(std::max(offset + m_best, 0.));
         }
         report.products = m_solver.n_products();
         report.factorisations = m_solver.n_factorisations();
@@ -59,6 +57,12 @@ public:
     }
 
 private:
+    static constexpr int patience = 6; ///< sets without a lower residual before the ridge begins or grows
+    static constexpr int max_idle = 3; ///< solves on the same set without progress before giving up
+    static constexpr double first_ridge = 1e-2;
+    static constexpr double least_ridge = 1e-12;
+    static constexpr double least_shrink = 0.1;
+
     [[nodiscard]] bool moves(Index u) const { return !m_problem.held(u) && m_curvature(u) > 0; }
 
     [[nodiscard]] bool go_on() {
@@ -68,16 +72,25 @@ private:
         return !m_stopped;
     }
 
+    /// The gradient of Phi itself.
+    [[nodiscard]] Values<double> own_gradient() const {
+        return m_ridge > 0 ? m_gradient - m_ridge * m_curvature.cwiseProduct(m_theta - m_centre) : m_gradient;
+    }
+
     /// Phi less its constant.
-    [[nodiscard]] double value() const { return 0.5 * m_theta.dot(m_gradient - m_linear); }
+    [[nodiscard]] double value() const { return 0.5 * m_theta.dot(own_gradient() - m_linear); }
 
     /// As `kkt_residual`.
-    [[nodiscard]] double residual() const {
+    [[nodiscard]] double residual() const { return residual(own_gradient()); }
+    /// The same of what is being minimised.
+    [[nodiscard]] double working_residual() const { return residual(m_gradient); }
+
+    [[nodiscard]] double residual(const Values<double>& gradient) const {
         double largest = 0;
         for (Index u = 0; u < m_theta.size(); ++u) {
             if (moves(u)) {
-                const double moved = std::clamp(m_theta(u) - m_gradient(u) / m_curvature(u), m_problem.lower(u),
-                                                m_problem.upper(u));
+                const double moved =
+                    std::clamp(m_theta(u) - gradient(u) / m_curvature(u), m_problem.lower(u), m_problem.upper(u));
                 largest = std::max(largest, std::sqrt(m_curvature(u)) * std::abs(m_theta(u) - moved));
             }
         }
@@ -88,6 +101,9 @@ private:
     void refresh() {
         m_solver.multiply(m_theta, m_gradient);
         m_gradient -= m_linear;
+        if (m_ridge > 0) {
+            m_gradient -= m_ridge * m_curvature.cwiseProduct(m_centre);
+        }
     }
 
     /// What theta less the scaled gradient would take beyond a bound goes there, with the gradient following.
@@ -125,50 +141,17 @@ private:
         m_weight(u) = side == 0 ? 1 / m_curvature(u) : 0.;
     }
 
-    /// Solves for the free unknowns: loosely while the set still changes, and to the end once it stays.
-    bool solve(Values<double>& theta, Values<double>& gradient) {
-        const double final = 0.3 * m_options.tolerance * m_scale;
-        const double now = m_solver.largest(m_weight, gradient);
-        const double share = m_changes == 0 ? 0 : m_solver.direct() ? std::min(m_accuracy, 1e-4) : m_accuracy;
-        return m_solver.solve(m_weight, std::max(final, share * now), final, theta, gradient);
-    }
-
+    /// Solves for the free unknowns, loosely while the set still changes and to the end once it stays, and chooses the
+    /// next set. False where the caller stops it.
     bool solve_and_choose() {
-        if (!solve(m_theta, m_gradient)) {
+        const double final = 0.3 * m_options.tolerance * m_scale;
+        const double now = m_solver.largest(m_weight, m_gradient);
+        const double share = m_changes == 0 ? 0 : m_solver.direct() ? std::min(m_accuracy, 1e-4) : m_accuracy;
+        if (!m_solver.solve(m_weight, std::max(final, share * now), final, m_theta, m_gradient)) {
             return false;
         }
         choose_sides();
         return true;
-    }
-
-    /// A projected Newton step: the unknowns that a bound holds back stay, the others go where their gradient is 0, or
-    /// as far along the way, cut off at the bounds, as Phi falls enough. False where rounding lets it fall no more.
-    bool descend() {
-        m_changes = 0;
-        for (Index u = 0; u < m_theta.size(); ++u) {
-            const bool down = m_theta(u) <= m_problem.lower(u) && m_gradient(u) >= 0;
-            const bool up = m_theta(u) >= m_problem.upper(u) && m_gradient(u) <= 0;
-            set_side(u, static_cast<signed char>(!moves(u) ? -2 : down ? -1 : up ? 1 : 0));
-        }
-        Values<double> target = m_theta;
-        Values<double> unused = m_gradient;
-        if (!solve(target, unused)) {
-            return false;
-        }
-        const Values<double> direction = target - m_theta;
-        for (double length = 1; length > 1e-10; length *= 0.5) {
-            Values<double> trial =
-                (m_theta + length * direction).cwiseMax(m_problem.lower).cwiseMin(m_problem.upper);
-            m_step = trial - m_theta;
-            m_solver.multiply(m_step, m_image);
-            const double slope = m_step.dot(m_gradient);
-            if (slope < 0 && slope + 0.5 * m_step.dot(m_image) <= 1e-4 * slope) {
-                m_theta = trial;
-                refresh();
-                return true;
-            }
-        }
-        return false;
     }
 
     /// Keeps the point where it is the best so far, and says whether to go on.
@@ -178,46 +161,68 @@ private:
             refresh();
             now = residual();
         }
-        const double at = value();
-        const double rounding = 1e-12 * std::abs(m_best);
-        const bool lower = at < m_best - rounding;
-        const bool sharper = now < m_best_residual;
-        if (at <= m_start_value && (lower || (at < m_best + rounding && sharper))) {
-            m_best = std::min(at, m_best);
-            m_best_theta = m_theta;
-            m_best_residual = now;
-        }
+        keep_better(now);
         const bool settled = m_changes == 0 && now > 0.5 * m_residual;
         m_residual = now;
         if (now <= m_options.tolerance) {
             m_best_theta = m_theta;
             return Status::converged;
         }
-        m_idle = settled ? m_idle + 1 : 0;
-        if (m_idle == 3) {
+        m_idle = settled && m_ridge <= least_ridge ? m_idle + 1 : 0;
+        if (m_idle == max_idle) {
             return Status::stalled;
         }
-        if(getenv("TR")) printf("   res %.2e value %.9e ch %ld acc %.0e mono %d prod %d fac %d\n",now,at,m_changes,m_accuracy,m_monotone,m_solver.n_products(),m_solver.n_factorisations());
-        m_accuracy = now > 0.5 * m_lowest ? std::max(0.1 * m_accuracy, 1e-8) : m_accuracy;
-        m_fruitless = now < m_lowest ? 0 : m_fruitless + 1;
-        m_lowest = std::min(m_lowest, now);
-        if (!m_monotone && m_fruitless >= m_patience) {
-            m_monotone = true;
+        const double working = working_residual();
+        if (m_ridge > 0 && working <= 0.1 * now) {
+            m_shrink = std::max(least_shrink, std::pow(m_shrink, 1.5));
+            begin_stage(std::max(m_shrink * m_ridge, least_ridge));
+            return Status::iteration_limit;
+        }
+        m_accuracy = working > 0.5 * m_lowest ? std::max(0.1 * m_accuracy, 1e-8) : m_accuracy;
+        m_fruitless = working < m_lowest ? 0 : m_fruitless + 1;
+        m_lowest = std::min(m_lowest, working);
+        if (m_fruitless == patience) {
             m_theta = m_best_theta;
-            refresh();
+            m_shrink = m_ridge > 0 ? std::sqrt(m_shrink) : m_shrink;
+            begin_stage(m_ridge > 0 ? m_ridge / (m_shrink * m_shrink) : first_ridge);
         }
         return Status::iteration_limit;
     }
 
+    /// From here on Phi + ridge / 2 |theta - theta now|^2, measured by diag(H), is minimised.
+    void begin_stage(double ridge) {
+        m_ridge = ridge;
+        m_centre = m_theta;
+        m_solver.set_ridge(ridge);
+        m_accuracy = 0.1;
+        m_fruitless = 0;
+        m_lowest = std::numeric_limits<double>::infinity();
+        refresh();
+        choose_sides();
+    }
+
+    void keep_better(double now) {
+        const double at = value();
+        const double rounding = 1e-12 * std::abs(m_best);
+        const bool lower = at < m_best - rounding;
+        const bool sharper = at < m_best + rounding && now < m_best_residual;
+        if (at <= m_start_value && (lower || sharper)) {
+            m_best = std::min(at, m_best);
+            m_best_theta = m_theta;
+            m_best_residual = now;
+        }
+    }
+
     const FitProblem& m_problem;
     const ExactOptions& m_options;
-    int m_patience;
     Values<double> m_curvature, m_linear, m_theta, m_gradient, m_weight, m_step, m_image;
     std::vector<signed char> m_side; ///< -1 on the lower bound, 1 on the upper, 0 free, -2 does not move
     Index m_changes = 0;             ///< of sides, by the last choice
     double m_scale = 0;
     double m_accuracy = 0.1; ///< part of the gradient that a solve may leave
-    bool m_monotone = false;
+    double m_ridge = 0;
+    double m_shrink = least_shrink; ///< of the ridge from stage to stage
+    Values<double> m_centre;
     bool m_stopped = false;
     int m_idle = 0;
     int m_fruitless = 0;
@@ -242,8 +247,7 @@ inline FitReport exact(const FitProblem& problem, const ExactOptions& options) {
                                      ? options.initial.cwiseMax(problem.lower).cwiseMin(problem.upper).eval()
                                      : problem.prior;
     report.objective_start = problem.objective.value(start);
-    constexpr int patience = 6;
-    report.theta = detail::ActiveSet(problem, options, start, patience).run(report);
+    report.theta = detail::ActiveSet(problem, options, start).run(report);
     complete(problem, report);
     if (report.objective > report.objective_start) { // by rounding alone
         report.theta = start;

@@ -13,9 +13,9 @@ namespace springfit::detail {
 
 /// Moves some unknowns of a quadratic to where their gradient is 0, the others held, for one set of them after another.
 ///
-/// Conjugate gradients preconditioned by the diagonal; once sparse Cholesky is expected to take less work, preconditioned
-/// by the factor of this set, or by that of an earlier one while the two differ little. What decides is a count of
-/// operations, not of seconds, so that results repeat.
+/// Conjugate gradients preconditioned by the diagonal; once sparse Cholesky is expected to take less work,
+/// preconditioned by the factor of this set, or by that of an earlier one while the two differ little. What decides is
+/// a count of operations, not of seconds, so that results repeat.
 class FreeSolver {
 public:
     /// `curvature` is the diagonal of H; `go_on` is asked now and then.
@@ -36,10 +36,24 @@ public:
     /// True once the factor is in use.
     [[nodiscard]] bool direct() const { return m_direct; }
 
+    /// From now on H + ridge diag(H) in the place of H.
+    void set_ridge(double ridge) {
+        m_ridge = ridge;
+        m_factorised.resize(0);
+        m_direct = false;
+        m_before = m_n_products;
+    }
+
     /// result = H x; returns x'H x.
     double multiply(const Values<double>& x, Values<double>& result) {
         ++m_n_products;
-        return m_product(x, result);
+        double square = m_product(x, result);
+        if (m_ridge > 0) {
+            m_terms = m_ridge * m_curvature.cwiseProduct(x);
+            result += m_terms;
+            square += m_terms.dot(x);
+        }
+        return square;
     }
 
     /// Largest scaled gradient |g_u| / sqrt(H_uu) of the unknowns to move: `weight` is 1 / H_uu for them, 0 for others.
@@ -47,14 +61,14 @@ public:
         return measure(weight, gradient).largest;
     }
 
-    /// Moves theta, and its whole gradient along, until `largest` is not above `target` or rounding prevents that; false
-    /// where `go_on` said stop. `final` is the target of the last set, from which the work to come is estimated.
+    /// Moves theta, and its whole gradient along, until `largest` is not above `target` or rounding prevents that;
+    /// false where `go_on` said stop. `final` is the target of the last set, from which the work to come is estimated.
     bool solve(const Values<double>& weight, double target, double final, Values<double>& theta,
                Values<double>& gradient) {
         m_final = final;
         if (!m_direct) {
-            const Outcome outcome = conjugate_gradients<Preconditioner::diagonal>(
-                weight, target, theta, gradient, std::numeric_limits<int>::max());
+            const Outcome outcome = conjugate_gradients<Preconditioner::diagonal>(weight, target, theta, gradient,
+                                                                                  std::numeric_limits<int>::max());
             if (outcome != Outcome::slow) {
                 return outcome != Outcome::stopped;
             }
@@ -65,14 +79,14 @@ public:
         const Index changed = m_factorised.size() == 0 ? m_curvature.size()
                                                        : ((m_factorised.array() > 0) != (weight.array() > 0)).count();
         if (2 * changed <= worth) {
-            const Outcome outcome = conjugate_gradients<Preconditioner::factor>(
-                weight, target, theta, gradient, static_cast<int>(2 * changed + 3));
+            const Outcome outcome = conjugate_gradients<Preconditioner::factor>(weight, target, theta, gradient,
+                                                                                static_cast<int>(2 * changed + 3));
             if (outcome != Outcome::slow) {
                 return outcome != Outcome::stopped;
             }
         }
         ++m_n_factorisations;
-        if (!m_factor->factorise(weight)) {
+        if (!m_factor->factorise(weight, m_ridge)) {
             m_factorised.resize(0);
             return m_go_on();
         }
@@ -84,18 +98,21 @@ private:
     enum class Outcome { solved, slow, stopped };
     enum class Preconditioner { diagonal, factor };
     static constexpr Index unknowns_per_chunk = 2048;
-    static constexpr int patience = 300;          ///< iterations in all before a factorisation is thought of: its analysis
-                                                  ///< takes about as long
-    static constexpr double n_expected = 5;       ///< factorisations until the end, once they begin
+    static constexpr int patience = 300;    ///< iterations in all before a factorisation is thought of: its analysis
+                                            ///< takes about as long
+    static constexpr double n_expected = 5; ///< factorisations until the end, once they begin
     static constexpr double product_slowness = 3; ///< time of an operation in a product with H, that in a front being 1
     static constexpr double solve_slowness = 8;   ///< the same in triangular solves
 
-    [[nodiscard]] double factor_cost() const { return m_factor->factor().flops() + 50 * m_factor->factor().n_entries(); }
+    [[nodiscard]] double factor_cost() const {
+        return m_factor->factor().flops() + 50 * m_factor->factor().n_entries();
+    }
     [[nodiscard]] double solve_cost() const { return solve_slowness * 4 * m_factor->factor().n_entries(); }
 
     /// Whether a factor is expected to be quicker, after `iterations` that made the gradient `reduced` times smaller.
     bool factor_is_quicker(int iterations, double reduced, double largest_now) {
-        if (m_n_products < patience || iterations % 50 != 0) {
+        const int spent = m_n_products - m_before;
+        if (spent < patience || iterations % 50 != 0) {
             return false;
         }
         if (!m_factor) {
@@ -104,7 +121,7 @@ private:
         const double direct = n_expected * (factor_cost() + 10 * solve_cost());
         const double rate = std::log(std::max(reduced, 1.01)) / iterations;
         const double to_come = std::log(std::max(largest_now / m_final, 10.)) / rate;
-        return m_product_cost * std::max<double>(to_come, m_n_products) > direct;
+        return m_product_cost * std::max<double>(to_come, spent) > direct;
     }
 
     /// Of the gradient where `weight` is not 0.
@@ -135,8 +152,8 @@ private:
         return measure_after(weight, gradient, [](Index, Index) {});
     }
 
-    /// m_direction = share * m_direction - M gradient, with the diagonal or the factor as M; returns gradient' M gradient,
-    /// which `share_of` is given before.
+    /// m_direction = share * m_direction - M gradient, with the diagonal or the factor as M; returns gradient' M
+    /// gradient, which `share_of` is given before.
     template <Preconditioner kind, class Share>
     double turn(const Values<double>& weight, const Values<double>& gradient, double square, const Share& share_of) {
         if constexpr (kind == Preconditioner::factor) {
@@ -151,8 +168,8 @@ private:
             if constexpr (kind == Preconditioner::factor) {
                 direction = share * direction - m_preconditioned.segment(begin, end - begin).array();
             } else {
-                direction = share * direction - weight.segment(begin, end - begin).array() *
-                                                    gradient.segment(begin, end - begin).array();
+                direction = share * direction -
+                            weight.segment(begin, end - begin).array() * gradient.segment(begin, end - begin).array();
             }
         });
         return square;
@@ -199,7 +216,9 @@ private:
     std::function<bool()> m_go_on;
     double m_product_cost = 0;
     double m_final = 0;
+    double m_ridge = 0;
     int m_n_products = 0;
+    int m_before = 0; ///< products when the matrix last changed
     int m_n_factorisations = 0;
     bool m_direct = false;
     std::optional<MaskedCholesky> m_factor;

@@ -8,8 +8,8 @@ namespace springfit::detail {
 
 /// Sparse Cholesky factor of the free part H_FF of a node quadratic's Hessian, for one free set after another.
 ///
-/// Rows and columns of the others are replaced by those of the identity, so the pattern, and with it the ordering and the
-/// symbolic analysis, is that of the whole H for every set. H is scaled to a unit diagonal.
+/// Rows and columns of the others are replaced by those of the identity, so the pattern, and with it the ordering and
+/// the symbolic analysis, is that of the whole H for every set. H is scaled to a unit diagonal.
 class MaskedCholesky {
 public:
     /// `curvature` is the diagonal of H.
@@ -25,10 +25,11 @@ public:
         m_factor.analyse(m_masked);
     }
 
-    /// Factorises for the unknowns whose `weight` is not 0; false where H_FF is too close to singular.
+    /// Factorises H + ridge diag(H) for the unknowns whose `weight` is not 0; false where that is too close to
+    /// singular.
     ///
-    /// The diagonal is raised by 1e-14 of itself, or by as much more as keeps the pivots positive.
-    [[nodiscard]] bool factorise(const Values<double>& weight) {
+    /// The diagonal is raised by another 1e-14 of itself, or by as much more as keeps the pivots positive.
+    [[nodiscard]] bool factorise(const Values<double>& weight, double ridge) {
         for (int c = 0; c < m_masked.outerSize(); ++c) {
             for (SparseMatrix<double>::InnerIterator entry(m_masked, c); entry; ++entry) {
                 const bool kept = weight(c) != 0 && weight(entry.row()) != 0;
@@ -38,8 +39,8 @@ public:
         }
         double raised = 0;
         for (double shift = 1e-14; shift < 1e-5; shift *= 100) {
-            m_masked.diagonal().array() += shift - raised;
-            raised = shift;
+            m_masked.diagonal().array() += ridge + shift - raised;
+            raised = ridge + shift;
             if (m_factor.factorise(m_masked)) {
                 return true;
             }

@@ -6,9 +6,9 @@
 
 namespace springfit::detail {
 
-/// H x of a node quadratic, many times over: every term into its own place first, then every unknown sums what its terms
-/// have for it, in their order. So terms and unknowns are independent of each other, and the bits do not depend on the
-/// number of threads. Memory: about 20 bytes per column of a term.
+/// H x of a node quadratic, many times over: every term into its own place first, then every unknown sums what its
+/// terms have for it, in their order. So terms and unknowns are independent of each other, and the bits do not depend
+/// on the number of threads. Memory: about 20 bytes per column of a term.
 class NodeProduct {
 public:
     NodeProduct(const NodeQuadratic& objective, const Execution& execution)
@@ -52,8 +52,8 @@ private:
     static constexpr Index unknowns_per_chunk = 2048;
     static constexpr Index terms_at_once = 16;
 
-    /// H_i x_i of some terms. What they need of x is gathered for a few of them before they are multiplied: a vector load
-    /// right after the scalar stores that it reads would wait for them.
+    /// H_i x_i of some terms. What they need of x is gathered for a few of them before they are multiplied: a vector
+    /// load right after the scalar stores that it reads would wait for them.
     void multiply(const Values<double>& x, Index begin, Index end) {
         Values<double> gathered;
         for (Index first = begin; first < end; first += terms_at_once) {

@@ -12,8 +12,8 @@ namespace springfit::detail {
 
 /// y = A x for a symmetric A `[n x n]` whose lower triangle is packed column by column.
 ///
-/// x and y have `packed_room(n)` entries; those of x behind n are 0, those of y come out with anything. Four columns at a
-/// time, so that the rows below their diagonal block are read and written once: an axpy down and a dot across.
+/// x and y have `packed_room(n)` entries; those of x behind n are 0, those of y come out with anything. Four columns at
+/// a time, so that the rows below their diagonal block are read and written once: an axpy down and a dot across.
 inline void packed_product(const double* a, Index n, const double* x, double* y) {
     using Lanes = Eigen::Array<double, 4, 1>;
     using In = Eigen::Map<const Lanes>;

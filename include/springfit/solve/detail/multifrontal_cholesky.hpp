@@ -129,8 +129,7 @@ inline void MultifrontalCholesky::find_supernodes(const Tree& tree) {
     const auto n = static_cast<int>(size());
     for (int c = 0; c < n; ++c) {
         const int count = tree.count[static_cast<std::size_t>(c)];
-        if (!ranges.empty() && parent_of(ranges.back()) == c &&
-            ranges.back().rows - ranges.back().width == count) {
+        if (!ranges.empty() && parent_of(ranges.back()) == c && ranges.back().rows - ranges.back().width == count) {
             ++ranges.back().width;
             continue;
         }
@@ -143,8 +142,7 @@ inline void MultifrontalCholesky::find_supernodes(const Tree& tree) {
             Range& parent = merged.back();
             const int width = range->width + parent.width;
             const int rows = range->width + parent.rows;
-            const double zeros =
-                range->zeros + parent.zeros + static_cast<double>(range->width) * (rows - range->rows);
+            const double zeros = range->zeros + parent.zeros + static_cast<double>(range->width) * (rows - range->rows);
             const double share = zeros / (static_cast<double>(width) * (rows - 0.5 * width));
             if (width <= 8 || share < (width <= 32 ? 0.3 : 0.08)) {
                 parent = {range->first, width, rows, zeros};
@@ -176,8 +174,8 @@ inline void MultifrontalCholesky::find_rows(const SparseMatrix<double>& lower, c
     std::vector<std::vector<std::pair<int, int>>> cells(m_supernodes.size()); // row and column, beside `entries`
     for (int c = 0, e = 0; c < lower.outerSize(); ++c) {
         for (SparseMatrix<double>::InnerIterator entry(lower, c); entry; ++entry, ++e) {
-            const auto [column, row] = std::minmax(m_place[static_cast<std::size_t>(entry.row())],
-                                                   m_place[static_cast<std::size_t>(c)]);
+            const auto [column, row] =
+                std::minmax(m_place[static_cast<std::size_t>(entry.row())], m_place[static_cast<std::size_t>(c)]);
             const auto s = static_cast<std::size_t>(owner[static_cast<std::size_t>(column)]);
             m_supernodes[s].entries.push_back(e);
             cells[s].emplace_back(row, column);
