@@ -86,7 +86,8 @@ auto grid(int n) {
 
 /// Linear elasticity on a grid, its springs, and motion of the kind asked for, such that many bounds are active.
 template <int Dim>
-FitProblem elastic_problem(int n, int n_fields, double wave, double amplitude, int frames, Random& random) {
+FitProblem elastic_problem(int n, int n_fields, double wave, double amplitude, int frames, Random& random,
+                           double lower = 0) {
     const auto mesh = grid<Dim>(n);
     auto network = test::network_at_rest<Dim, double>(mesh.nodes, edges(mesh));
     network.stiffness.setConstant(100);
@@ -100,7 +101,10 @@ FitProblem elastic_problem(int n, int n_fields, double wave, double amplitude, i
         }
         displacements.push_back(u);
     }
-    return acceleration_problem<Dim, double>(network, {test::linear_motion<Dim>(network, stiffness, displacements)});
+    AccelerationOptions<double> options;
+    options.parameters.stiffness.lower = lower;
+    const auto motion = test::linear_motion<Dim>(network, stiffness, displacements);
+    return acceleration_problem<Dim, double>(network, {motion}, options);
 }
 
 } // namespace
@@ -221,7 +225,7 @@ TEST_CASE_TEMPLATE("active bounds: on the bound to the last bit, as projected Ne
 TEST_CASE_TEMPLATE("elastic motion with many bounds active", T, test::Space<2, double>, test::Space<3, double>) {
     constexpr int dim = T::dimension;
     Random random(73);
-    const FitProblem problem = elastic_problem<dim>(dim == 2 ? 12 : 5, 12, 6, 1e-2, 40, random);
+    const FitProblem problem = elastic_problem<dim>(dim == 2 ? 12 : 5, 12, 2, 1e-2, 40, random, dim == 2 ? 300 : 0);
     const FitReport report = exact(problem);
     CHECK(report.status == Status::converged);
     check_report(problem, report);
@@ -229,19 +233,52 @@ TEST_CASE_TEMPLATE("elastic motion with many bounds active", T, test::Space<2, d
     CHECK(report.at_lower.size() > 10);
 }
 
-TEST_CASE_TEMPLATE("two long waves: conjugate gradients give way to Cholesky", T, test::Space<2, double>,
+TEST_CASE_TEMPLATE("two long waves tell springs apart badly, and still", T, test::Space<2, double>,
                    test::Space<3, double>) {
     constexpr int dim = T::dimension;
     Random random(74);
     const FitProblem problem = elastic_problem<dim>(dim == 2 ? 20 : 7, 2, 0.3, 1e-3, 40, random);
     const FitReport report = exact(problem);
-    CAPTURE(report.kkt_residual);
-    CAPTURE(report.iterations);
-    CAPTURE(report.products);
     CHECK(report.status == Status::converged);
     check_report(problem, report);
-    CHECK(report.factorisations > 0);
-    CHECK(report.at_lower.size() > 0);
+    CHECK(report.products > 200);
+}
+
+TEST_CASE("a string under its weight: conjugate gradients give way to Cholesky") {
+    // 1/2 sum (theta_{i+1} - theta_i)^2 - sum theta_i with both ends at 0 has the minimiser i (n + 1 - i) / 2.
+    const int n = 3000;
+    NodeQuadratic objective(n);
+    for (int i = 0; i <= n; ++i) {
+        if (i == 0 || i == n) {
+            const std::vector<int> end{i == 0 ? 0 : n - 1};
+            objective.add_term(i, end, std::vector<double>{1}, std::vector<double>{0.5}, i == 0 ? 1e10 : 0);
+        } else {
+            const std::vector<int> pair{i - 1, i};
+            objective.add_term(i, pair, std::vector<double>{1, -1, 1}, std::vector<double>{0.5, 0.5}, 0);
+        }
+    }
+    const Values<double> zero = Values<double>::Zero(n);
+    const double infinity = std::numeric_limits<double>::infinity();
+    const Values<double> anything = Values<double>::Constant(n, infinity);
+    const FitReport free = exact(box_problem(objective, -anything, anything, zero));
+    CHECK(free.status == Status::converged);
+    CHECK(free.factorisations > 0);
+    const double largest = 0.125 * n * n;
+    for (int i = 1; i <= n; ++i) {
+        CHECK(test::relative(free.theta(i - 1), 0.5 * i * (n + 1. - i), largest) < 1e-8);
+    }
+    // A ceiling at half the height holds the middle: the rest are parabolas that touch it.
+    const double ceiling = 0.5 * largest;
+    const FitProblem below = box_problem(objective, zero, Values<double>::Constant(n, ceiling), zero);
+    const FitReport held = exact(below);
+    CHECK(held.status == Status::converged);
+    check_report(below, held);
+    CHECK(held.factorisations > 0);
+    const double touch = std::sqrt(2 * ceiling); // where theta'' = -1 from a level tangent reaches 0
+    CHECK(std::abs(double(held.at_upper.size()) - (n - 2 * touch)) < 4);
+    for (int i = 1; i < touch - 2; ++i) {
+        CHECK(test::relative(held.theta(i - 1), ceiling - 0.5 * (touch - i) * (touch - i), ceiling) < 2e-3);
+    }
 }
 
 TEST_CASE("sets that go round in circles are settled by a pull to where they are") {
@@ -294,7 +331,7 @@ TEST_CASE("held unknowns stay, and nothing to solve is no failure") {
 
 TEST_CASE("a stop returns the best so far, an exception comes through, a wrong option is refused") {
     Random random(77);
-    const FitProblem problem = elastic_problem<3>(4, 12, 6, 1e-2, 40, random);
+    const FitProblem problem = elastic_problem<3>(4, 12, 2, 1e-2, 40, random);
     const FitReport whole = exact(problem);
     for (int stop = 0; stop < 4; ++stop) {
         CAPTURE(stop);
