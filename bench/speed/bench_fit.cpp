@@ -23,9 +23,9 @@ using namespace springfit;
 
 /// What the springs are fitted to.
 enum class Excitation {
-    rich, ///< twelve waves of about the body's size, and accelerations with three times their size in noise: 13 % of the
-          ///< springs end on their bound
-    poor  ///< two longer waves, and a tenth in noise: hardly anything tells one spring from the next
+    rich, ///< twelve waves of about the body's size, and accelerations with three times their size in noise: 13 % of
+          ///< the springs end on their bound
+    poor ///< two longer waves, and a tenth in noise: hardly anything tells one spring from the next
 };
 
 /// 200 frames of smooth motion with the network's own accelerations and noise.
@@ -58,7 +58,8 @@ Motion<Dim, Scalar> smooth_motion(const SpringNetwork<Dim, Scalar>& network, Exc
         Points<Dim, Scalar> v = zero;
         for (const Wave& wave : waves) {
             for (Index i = 0; i < x.cols(); ++i) {
-                const Scalar angle = wave.wave_vector.dot(network.rest_positions.col(i)) + wave.frequency * time + wave.phase;
+                const Scalar angle =
+                    wave.wave_vector.dot(network.rest_positions.col(i)) + wave.frequency * time + wave.phase;
                 x.col(i) += std::sin(angle) * wave.direction;
                 v.col(i) += wave.frequency * std::cos(angle) * wave.direction;
             }

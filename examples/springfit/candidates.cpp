@@ -104,7 +104,8 @@ std::vector<Candidate<Dim>> make_candidates(const Discretisation<Dim>& body, con
         candidates.push_back(std::move(candidate));
     }
     if ((options.method == "auto" || options.method == "trajectory") && !interrupted()) {
-        if (auto matched = match_motion<Dim>(best_closed_form<Dim>(candidates, cases, execution), cases, options, execution)) {
+        if (auto matched =
+                match_motion<Dim>(best_closed_form<Dim>(candidates, cases, execution), cases, options, execution)) {
             candidates.push_back(std::move(*matched));
         }
     }
@@ -203,9 +204,9 @@ void score(std::vector<Candidate<Dim>>& candidates, const ReferenceCases<Dim>& c
 template <int Dim>
 io::NamedNumbers held_out_parts(const Candidate<Dim>& candidate, const CaseSet<Dim>& held_out) {
     io::NamedNumbers parts;
-    for (const auto& [part, in_time, trained] : {std::tuple{"motions_in_time", true, true},
-                                                 std::tuple{"equilibria_of_trained_kinds", false, true},
-                                                 std::tuple{"equilibria_of_unseen_kinds", false, false}}) {
+    for (const auto& [part, in_time, trained] :
+         {std::tuple{"motions_in_time", true, true}, std::tuple{"equilibria_of_trained_kinds", false, true},
+          std::tuple{"equilibria_of_unseen_kinds", false, false}}) {
         double from_reference = 0;
         double of_reference = 0;
         for (std::size_t c = 0; c < candidate.held_out_cases.size(); ++c) {

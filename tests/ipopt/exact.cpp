@@ -98,12 +98,11 @@ TEST_CASE("a stop returns the best so far, an exception comes through, a wrong o
     for (int stop = 0; stop < 6; ++stop) {
         CAPTURE(stop);
         int calls = 0;
-        const FitReport report =
-            ipopt::exact(problem, {.progress = [&](const Progress& p) {
-                             CHECK(p.stage == "exact fit");
-                             CHECK((p.fraction >= 0 && p.fraction <= 1));
-                             return calls++ < stop;
-                         }});
+        const FitReport report = ipopt::exact(problem, {.progress = [&](const Progress& p) {
+                                                  CHECK(p.stage == "exact fit");
+                                                  CHECK((p.fraction >= 0 && p.fraction <= 1));
+                                                  return calls++ < stop;
+                                              }});
         CHECK(report.status == Status::interrupted);
         CHECK(calls == stop + 1);
         CHECK(report.objective <= start);
@@ -149,8 +148,8 @@ TEST_CASE("stiffness and damping orders of magnitude apart, in any unit") {
         const FitReport report = ipopt::exact(problem);
         CHECK(report.status == Status::converged);
         apply(problem, report, network);
-        CHECK(test::relative_error(problem.parameters, ParameterKind::stiffness, network.stiffness,
-                                   truth.stiffness) < 1e-6);
+        CHECK(test::relative_error(problem.parameters, ParameterKind::stiffness, network.stiffness, truth.stiffness) <
+              1e-6);
         CHECK(test::relative_error(problem.parameters, ParameterKind::damping, network.damping, truth.damping) < 1e-6);
     }
 }

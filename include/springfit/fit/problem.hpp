@@ -26,17 +26,17 @@ struct FitProblem {
 /// What a solver of the acceleration fit found.
 struct FitReport {
     Status status = Status::failed;
-    Values<double> theta;              ///< [n_unknowns], within the bounds to the last bit
-    double objective_start = 0;        ///< Phi where the iteration began
-    double objective = 0;              ///< Phi(theta)
-    std::vector<double> history;       ///< Phi after each sweep or iteration
-    int iterations = 0;                ///< sweeps or iterations
-    int products = 0;                  ///< products with H, of `exact`
-    int factorisations = 0;            ///< sparse factorisations of H, of `exact`; 0: conjugate gradients were enough
-    double seconds = 0;                ///< wall clock of the solver
-    double kkt_residual = 0;           ///< `kkt_residual(problem, theta)`
-    Values<double> lower_multipliers;  ///< >= 0 [n_unknowns]; gradient = lower_multipliers - upper_multipliers
-    Values<double> upper_multipliers;  ///< >= 0 [n_unknowns]
+    Values<double> theta;             ///< [n_unknowns], within the bounds to the last bit
+    double objective_start = 0;       ///< Phi where the iteration began
+    double objective = 0;             ///< Phi(theta)
+    std::vector<double> history;      ///< Phi after each sweep or iteration
+    int iterations = 0;               ///< sweeps or iterations
+    int products = 0;                 ///< products with H, of `exact`
+    int factorisations = 0;           ///< sparse factorisations of H, of `exact`; 0: conjugate gradients were enough
+    double seconds = 0;               ///< wall clock of the solver
+    double kkt_residual = 0;          ///< `kkt_residual(problem, theta)`
+    Values<double> lower_multipliers; ///< >= 0 [n_unknowns]; gradient = lower_multipliers - upper_multipliers
+    Values<double> upper_multipliers; ///< >= 0 [n_unknowns]
     std::vector<SpringParameter> at_lower;        ///< values that lie on their lower bound
     std::vector<SpringParameter> at_upper;        ///< values that lie on their upper bound
     std::vector<SpringParameter> not_identified;  ///< values that no motion excites: they got their prior
@@ -44,7 +44,8 @@ struct FitReport {
 };
 
 /// How far theta is from optimal, free of units: with x = sqrt(H_uu) theta_u and its gradient q,
-/// max |x - clip(x - q, bounds)| / max |q at theta = 0|; 0 exactly at the minimiser. `gradient` is that of Phi at theta.
+/// max |x - clip(x - q, bounds)| / max |q at theta = 0|; 0 exactly at the minimiser. `gradient` is that of Phi at
+/// theta.
 [[nodiscard]] inline double kkt_residual(const FitProblem& problem, const Values<double>& theta,
                                          const Values<double>& gradient) {
     const Values<double> curvature = problem.objective.curvature();
