@@ -65,7 +65,7 @@ interpolation_at(const springfit::Mesh<3, double, springfit::Tet4>& mesh, const 
 [[nodiscard]] springfit::Mesh<3, double, springfit::Tet4>
 random_cut_box(const std::array<int, 3>& cells, const std::array<double, 3>& size, unsigned seed);
 
-/// The exact minimiser of the acceleration fit by Ipopt; nothing where it is not built in.
+/// The exact minimiser of the acceleration fit by Ipopt, the reference; nothing where it is not built in.
 [[nodiscard]] std::optional<springfit::FitReport> exact_fit(const springfit::FitProblem& problem);
 
 } // namespace study

@@ -5,17 +5,25 @@
 #include <random>
 #include <vector>
 
+#include <springfit/fit/acceleration_objective.hpp>
 #include <springfit/motion/motion.hpp>
 #include <springfit/network/forces.hpp>
 
 namespace bench {
 
-/// 200 frames of smooth motion, twelve waves of about the body's size, with the network's own accelerations and noise
-/// of `relative_noise` times their root mean square.
+/// What the springs are fitted to.
+enum class Excitation {
+    rich, ///< twelve waves of about the body's size, and accelerations with three times their size in noise: 13 % of
+          ///< the springs end on their bound
+    poor  ///< two longer waves, and a tenth in noise: hardly anything tells one spring from the next
+};
+
+/// 200 frames of smooth motion with the network's own accelerations and noise.
 template <int Dim, class Scalar>
 [[nodiscard]] springfit::Motion<Dim, Scalar> smooth_motion(const springfit::SpringNetwork<Dim, Scalar>& network,
-                                                           Scalar relative_noise = Scalar(0.1)) {
+                                                           Excitation excitation) {
     using namespace springfit;
+    const bool rich = excitation == Excitation::rich;
     std::mt19937 random(3);
     std::normal_distribution<Scalar> normal;
     const auto vector = [&] {
@@ -30,8 +38,8 @@ template <int Dim, class Scalar>
         Scalar frequency, phase;
     };
     std::vector<Wave> waves;
-    for (int w = 0; w < 12; ++w) {
-        waves.push_back({Scalar(0.02) * vector(), Scalar(4) * vector(), 1 + normal(random), normal(random)});
+    for (int w = 0; w < (rich ? 12 : 2); ++w) {
+        waves.push_back({Scalar(0.02) * vector(), Scalar(rich ? 4 : 1) * vector(), 1 + normal(random), normal(random)});
     }
     Motion<Dim, Scalar> motion;
     motion.rest_positions = network.rest_positions;
@@ -50,7 +58,7 @@ template <int Dim, class Scalar>
         }
         Points<Dim, Scalar> a;
         compute_accelerations<Dim, Scalar>(network, x, v, zero, a);
-        const Scalar noise = relative_noise * a.norm() / std::sqrt(static_cast<Scalar>(a.size()));
+        const Scalar noise = Scalar(rich ? 3 : 0.1) * a.norm() / std::sqrt(static_cast<Scalar>(a.size()));
         for (Index i = 0; i < a.cols(); ++i) {
             a.col(i) += noise * vector();
         }
@@ -61,6 +69,14 @@ template <int Dim, class Scalar>
         motion.external_forces.push_back(zero);
     }
     return motion;
+}
+
+/// The fit of a network's springs, from a stiffness of 1000 N/m on, to its own noisy motion.
+template <int Dim, class Scalar>
+[[nodiscard]] springfit::FitProblem fit_problem(springfit::SpringNetwork<Dim, Scalar> network,
+                                                const springfit::Motion<Dim, Scalar>& motion) {
+    network.stiffness.setConstant(1000);
+    return springfit::acceleration_problem<Dim, Scalar>(network, {motion});
 }
 
 } // namespace bench

@@ -6,7 +6,7 @@
 
 #include <springfit/fit/acceleration_objective.hpp>
 #include <springfit/fit/dominant_term.hpp>
-#include <springfit/ipopt/exact.hpp>
+#include <springfit/fit/exact.hpp>
 #include <springfit/motion/load_kinds.hpp>
 #include <springfit/network/damping.hpp>
 #include <springfit/network/forces.hpp>
@@ -104,7 +104,8 @@ std::vector<Candidate<Dim>> make_candidates(const Discretisation<Dim>& body, con
         candidates.push_back(std::move(candidate));
     }
     if ((options.method == "auto" || options.method == "trajectory") && !interrupted()) {
-        if (auto matched = match_motion<Dim>(best_closed_form<Dim>(candidates, cases, execution), cases, options, execution)) {
+        if (auto matched =
+                match_motion<Dim>(best_closed_form<Dim>(candidates, cases, execution), cases, options, execution)) {
             candidates.push_back(std::move(*matched));
         }
     }
@@ -124,7 +125,7 @@ std::vector<Candidate<Dim>> make_candidates(const Discretisation<Dim>& body, con
                     objective.add(motion);
                 }
             }
-            return objective.problem();
+            return std::move(objective).problem();
         }();
         const auto add = [&](const std::string& name, const auto& solve) {
             Stage stage("fit " + name);
@@ -152,9 +153,10 @@ std::vector<Candidate<Dim>> make_candidates(const Discretisation<Dim>& body, con
         }
         if ((options.method == "auto" || options.method == "exact") && !interrupted()) {
             add("exact", [&](const ProgressCallback& progress) {
-                ipopt::ExactOptions exact;
+                ExactOptions exact;
+                exact.execution = execution;
                 exact.progress = progress;
-                return ipopt::exact(problem, exact);
+                return springfit::exact(problem, exact);
             });
         }
     }
@@ -199,9 +201,9 @@ void score(std::vector<Candidate<Dim>>& candidates, const ReferenceCases<Dim>& c
 template <int Dim>
 io::NamedNumbers held_out_parts(const Candidate<Dim>& candidate, const CaseSet<Dim>& held_out) {
     io::NamedNumbers parts;
-    for (const auto& [part, in_time, trained] : {std::tuple{"motions_in_time", true, true},
-                                                 std::tuple{"equilibria_of_trained_kinds", false, true},
-                                                 std::tuple{"equilibria_of_unseen_kinds", false, false}}) {
+    for (const auto& [part, in_time, trained] :
+         {std::tuple{"motions_in_time", true, true}, std::tuple{"equilibria_of_trained_kinds", false, true},
+          std::tuple{"equilibria_of_unseen_kinds", false, false}}) {
         double from_reference = 0;
         double of_reference = 0;
         for (std::size_t c = 0; c < candidate.held_out_cases.size(); ++c) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Everything that needs Eigen alone. Meshing (`cgal/`), the exact fit (`ipopt/`), files (`io/`) and threads
+/// Everything that needs Eigen alone. Meshing (`cgal/`), Ipopt (`ipopt/`), files (`io/`) and threads
 /// (`parallel/`) are included one by one.
 
 #include <springfit/closed_form/all.hpp>
@@ -13,6 +13,7 @@
 #include <springfit/fem/statics.hpp>
 #include <springfit/fit/acceleration_objective.hpp>
 #include <springfit/fit/dominant_term.hpp>
+#include <springfit/fit/exact.hpp>
 #include <springfit/fit/trajectory.hpp>
 #include <springfit/mesh/structured.hpp>
 #include <springfit/motion/load_cases.hpp>

@@ -2,6 +2,7 @@
 #include "fit_data.hpp"
 
 #include <springfit/fit/dominant_term.hpp>
+#include <springfit/fit/exact.hpp>
 #include <springfit/parallel/tbb.hpp>
 
 using namespace springfit;
@@ -32,5 +33,6 @@ TEST_CASE_TEMPLATE("the same bits on any number of threads", T, SPRINGFIT_TEST_S
         CHECK(one_pass(problem, {.execution = execution}).theta == one_pass(alone).theta);
         CHECK(dominant_term(problem, {.max_sweeps = 3, .tolerance = 0, .execution = execution}).theta ==
               dominant_term(alone, {.max_sweeps = 3, .tolerance = 0}).theta);
+        CHECK(exact(problem, {.execution = execution}).theta == exact(alone).theta);
     }
 }

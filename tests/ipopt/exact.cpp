@@ -4,7 +4,11 @@
 #include <numeric>
 #include <stdexcept>
 
+#include <springfit/fem/dynamics.hpp>
+#include <springfit/fit/exact.hpp>
 #include <springfit/ipopt/exact.hpp>
+#include <springfit/motion/record.hpp>
+#include <springfit/network/topology.hpp>
 
 using namespace springfit;
 using test::Random;
@@ -94,12 +98,11 @@ TEST_CASE("a stop returns the best so far, an exception comes through, a wrong o
     for (int stop = 0; stop < 6; ++stop) {
         CAPTURE(stop);
         int calls = 0;
-        const FitReport report =
-            ipopt::exact(problem, {.progress = [&](const Progress& p) {
-                             CHECK(p.stage == "exact fit");
-                             CHECK((p.fraction >= 0 && p.fraction <= 1));
-                             return calls++ < stop;
-                         }});
+        const FitReport report = ipopt::exact(problem, {.progress = [&](const Progress& p) {
+                                                  CHECK(p.stage == "exact fit");
+                                                  CHECK((p.fraction >= 0 && p.fraction <= 1));
+                                                  return calls++ < stop;
+                                              }});
         CHECK(report.status == Status::interrupted);
         CHECK(calls == stop + 1);
         CHECK(report.objective <= start);
@@ -145,8 +148,51 @@ TEST_CASE("stiffness and damping orders of magnitude apart, in any unit") {
         const FitReport report = ipopt::exact(problem);
         CHECK(report.status == Status::converged);
         apply(problem, report, network);
-        CHECK(test::relative_error(problem.parameters, ParameterKind::stiffness, network.stiffness,
-                                   truth.stiffness) < 1e-6);
+        CHECK(test::relative_error(problem.parameters, ParameterKind::stiffness, network.stiffness, truth.stiffness) <
+              1e-6);
         CHECK(test::relative_error(problem.parameters, ParameterKind::damping, network.damping, truth.damping) < 1e-6);
     }
+}
+
+TEST_CASE_TEMPLATE("the fit without Ipopt finds the same springs in the motion of finite elements", T,
+                   test::Space<2, double>, test::Space<3, double>) {
+    constexpr int dim = T::dimension;
+    const auto mesh = [] {
+        if constexpr (dim == 2) {
+            auto triangles = triangle_grid<double>({10, 5}, {1, 0.5});
+            jitter(triangles, 0.2, 8u);
+            return triangles;
+        } else {
+            auto tets = tetrahedron_grid<double>({6, 3, 3}, {1, 0.5, 0.5});
+            jitter(tets, 0.2, 8u);
+            return tets;
+        }
+    }();
+    const fem::Model reference{mesh, fem::NeoHookean{.young = 1e4, .poisson = 0.3}, 1000.};
+    std::vector<Motion<dim, double>> motions;
+    for (int d = 0; d < dim; ++d) {
+        Scenario<dim, double> scenario;
+        scenario.name = "gravity";
+        std::vector<int> clamped;
+        for (Index i = 0; i < mesh.n_nodes(); ++i) {
+            if (mesh.nodes(0, i) < 1e-9) {
+                clamped.push_back(static_cast<int>(i));
+            }
+        }
+        scenario.clamps.push_back({.nodes = clamped, .position = {}});
+        Vector<dim, double> gravity = Vector<dim, double>::Zero();
+        gravity(d) = 2;
+        scenario.gravity.push_back({.acceleration = gravity, .amplitude = {}});
+        motions.push_back(record(reference, scenario, {.dt = 0.05, .frames = 30}).motion);
+    }
+    auto network = springs_along_edges(mesh, {.density = 1000.});
+    network.stiffness.setConstant(1000);
+    const FitProblem problem = acceleration_problem<dim, double>(network, motions);
+    const FitReport by_ipopt = ipopt::exact(problem);
+    const FitReport native = exact(problem);
+    CHECK(native.status == Status::converged);
+    CHECK(native.at_lower.size() > 5);
+    CHECK(test::relative(native.objective, by_ipopt.objective, by_ipopt.objective) < 1e-8);
+    CHECK(native.objective <= by_ipopt.objective * (1 + 1e-12));
+    CHECK(test::relative_difference(native.theta, by_ipopt.theta) < 1e-6);
 }

@@ -23,7 +23,7 @@ template <std::floating_point Scalar>
 struct AccelerationOptions {
     ParameterOptions parameters{};                         ///< the unknowns
     NodeWeighting weighting = NodeWeighting::acceleration; ///< w_i
-    Values<double> node_weights{}; ///< factors of w_i, >= 0 [n_nodes]; empty: 1
+    Values<double> node_weights{};                         ///< factors of w_i, >= 0 [n_nodes]; empty: 1
     /// An unknown is not identified where its curvature is below this part of the mean of its kind, in (0, 1).
     double identified = std::same_as<Scalar, float> ? 1e-8 : 1e-12;
 };
@@ -35,10 +35,10 @@ struct AccelerationOptions {
 ///
 /// f_i are the external forces and those of the network's cells, whose volume stiffness is taken as given. Nodes
 /// clamped in a motion do not count in it. Frames are read once and not kept: memory is about 4 (unknowns at a node)^2
-/// bytes per node and 32 frames of the motion. Cost per frame: sum over nodes of unknowns^2. Sums are in double whatever
-/// the Scalar of the data, and do not depend on the number of threads.
+/// bytes per node and 32 frames of the motion. Cost per frame: sum over nodes of unknowns^2. Sums are in double
+/// whatever the Scalar of the data, and do not depend on the number of threads.
 template <int Dim, std::floating_point Scalar>
-    requires SpatialDimension<Dim>
+requires SpatialDimension<Dim>
 class AccelerationObjective {
 public:
     /// Throws InvalidArgument where the network or an option is not valid.
@@ -96,7 +96,10 @@ public:
     }
 
     /// The quadratic of all frames so far, with bounds; more frames may follow.
-    [[nodiscard]] FitProblem problem();
+    [[nodiscard]] FitProblem problem() &;
+
+    /// The same from an objective that is not needed any more, whose memory the problem takes over.
+    [[nodiscard]] FitProblem problem() &&;
 
 private:
     static constexpr Index nodes_per_chunk = 64;
@@ -144,16 +147,17 @@ private:
     void index_springs(const SpringNetwork<Dim, Scalar>& network);
     void flush();
     void add_node(Index node, Eigen::Matrix<double, detail::FrameBatch<Dim, Scalar>::rows, Eigen::Dynamic>& equations);
+    [[nodiscard]] FitProblem take_problem(std::vector<double> gram);
     void identify(FitProblem& problem) const;
 
     AccelerationOptions<Scalar> m_options;
     Execution m_execution;
     Parameters m_parameters;
     Values<double> m_mass;
-    Values<double> m_root_weight; ///< sqrt(w_i) / m_i
+    Values<double> m_root_weight;                         ///< sqrt(w_i) / m_i
     Values<double> m_stiffness, m_rest_length, m_damping; ///< per spring; known values, 0 where fitted
-    SpringNetwork<Dim, double> m_cells; ///< the cells alone
-    Points<Dim, double> m_forces;       ///< of the frame added last, external and of the cells
+    SpringNetwork<Dim, double> m_cells;                   ///< the cells alone
+    Points<Dim, double> m_forces;                         ///< of the frame added last, external and of the cells
     bool m_uses_velocity = false;
     std::vector<bool> m_seen_free; ///< nodes that some motion leaves free
 
@@ -168,15 +172,14 @@ private:
 
 /// The fit of the springs of `network` to `motions`, each with the same weight, ready for any solver.
 template <int Dim, std::floating_point Scalar>
-[[nodiscard]] FitProblem acceleration_problem(const SpringNetwork<Dim, Scalar>& network,
-                                              const std::vector<Motion<Dim, Scalar>>& motions,
-                                              const AccelerationOptions<Scalar>& options = {},
-                                              const Execution& execution = {}) {
+[[nodiscard]] FitProblem
+acceleration_problem(const SpringNetwork<Dim, Scalar>& network, const std::vector<Motion<Dim, Scalar>>& motions,
+                     const AccelerationOptions<Scalar>& options = {}, const Execution& execution = {}) {
     AccelerationObjective<Dim, Scalar> objective(network, options, execution);
     for (const auto& motion : motions) {
         objective.add(motion);
     }
-    return objective.problem();
+    return std::move(objective).problem();
 }
 
 } // namespace springfit

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include <springfit/core/types.hpp>
+#include <springfit/fit/detail/packed_product.hpp>
 
 namespace springfit {
 
@@ -43,6 +43,28 @@ public:
     NodeQuadratic() = default;
     explicit NodeQuadratic(Index n_unknowns)
         : m_ridge(Values<double>::Zero(n_unknowns)), m_centre(Values<double>::Zero(n_unknowns)) {}
+
+    /// Many terms, one after another.
+    struct Terms {
+        std::vector<int> node, size;  ///< per term: number of its node, and of its unknowns
+        std::vector<double> constant; ///< per term
+        std::vector<int> columns;     ///< unknowns of all terms, ascending in each
+        std::vector<double> hessian;  ///< their packed lower triangles
+        std::vector<double> linear;   ///< g_i, beside `columns`
+    };
+
+    /// Takes over terms without a copy.
+    NodeQuadratic(Index n_unknowns, Terms terms) : NodeQuadratic(n_unknowns) {
+        for (const int n : terms.size) {
+            m_column_begin.push_back(m_column_begin.back() + n);
+            m_hessian_begin.push_back(m_hessian_begin.back() + Index(n) * (n + 1) / 2);
+        }
+        m_node = std::move(terms.node);
+        m_constant = std::move(terms.constant);
+        m_columns = std::move(terms.columns);
+        m_hessian = std::move(terms.hessian);
+        m_linear = std::move(terms.linear);
+    }
 
     /// Appends a term; `hessian` is the packed lower triangle in the order of `columns`, which ascend.
     void add_term(int node, std::span<const int> columns, std::span<const double> hessian,
@@ -83,45 +105,49 @@ public:
 
     /// H_i theta_i - g_i, the gradient of one term, into `gradient` `[term(i).size()]`; returns Phi_i.
     double term_gradient(Index i, const Values<double>& theta, double* gradient) const {
-        const Term t = term(i);
-        const Index n = t.size();
-        std::fill_n(gradient, n, 0.);
-        multiply(t, theta, gradient);
-        double value = t.constant;
-        for (Index p = 0; p < n; ++p) {
-            value += theta(t.columns[static_cast<std::size_t>(p)]) * (0.5 * gradient[p] - t.linear[p]);
-            gradient[p] -= t.linear[p];
-        }
+        Scratch scratch;
+        const double value = term_gradient(i, theta, scratch);
+        std::copy_n(scratch.image.data(), term(i).size(), gradient);
         return value;
     }
 
     /// Phi(theta); never below 0 by rounding. O(terms * valence^2), as all that follow.
     [[nodiscard]] double value(const Values<double>& theta) const {
-        std::vector<double> gradient;
-        double sum = 0.5 * (m_ridge.array() * (theta - m_centre).array().square()).sum();
+        Scratch scratch;
+        double sum = ridge_value(theta);
         for (Index i = 0; i < n_terms(); ++i) {
-            gradient.resize(term(i).columns.size());
-            sum += term_gradient(i, theta, gradient.data());
+            sum += term_gradient(i, theta, scratch);
         }
         return std::max(sum, 0.);
     }
 
     /// Gradient of Phi `[n_unknowns]`.
     [[nodiscard]] Values<double> gradient(const Values<double>& theta) const {
-        return product(theta) - linear();
+        Values<double> result;
+        (void)evaluate(theta, result);
+        return result;
+    }
+
+    /// Phi(theta), and its gradient into `gradient` `[n_unknowns]`, in one pass over the blocks.
+    double evaluate(const Values<double>& theta, Values<double>& gradient) const {
+        Scratch scratch;
+        double sum = ridge_value(theta);
+        gradient = m_ridge.cwiseProduct(theta - m_centre);
+        for (Index i = 0; i < n_terms(); ++i) {
+            sum += term_gradient(i, theta, scratch);
+            add(term(i), scratch, gradient);
+        }
+        return std::max(sum, 0.);
     }
 
     /// H x `[n_unknowns]`, from the node blocks.
     [[nodiscard]] Values<double> product(const Values<double>& x) const {
         Values<double> result = m_ridge.cwiseProduct(x);
-        std::vector<double> local;
+        Scratch scratch;
         for (Index i = 0; i < n_terms(); ++i) {
             const Term t = term(i);
-            local.assign(t.columns.size(), 0.);
-            multiply(t, x, local.data());
-            for (std::size_t p = 0; p < local.size(); ++p) {
-                result(t.columns[p]) += local[p];
-            }
+            scratch.multiply(t, x);
+            add(t, scratch, result);
         }
         return result;
     }
@@ -201,19 +227,44 @@ public:
     }
 
 private:
-    /// local += H_i x_i.
-    static void multiply(const Term& t, const Values<double>& x, double* local) {
-        const Index n = t.size();
-        const double* value = t.hessian;
-        for (Index q = 0; q < n; ++q) {
-            const double x_q = x(t.columns[static_cast<std::size_t>(q)]);
-            double sum = *value++ * x_q;
-            for (Index p = q + 1; p < n; ++p, ++value) {
-                local[p] += *value * x_q;
-                sum += *value * x(t.columns[static_cast<std::size_t>(p)]);
+    /// x and H x of one term.
+    struct Scratch {
+        std::vector<double> x, image;
+
+        /// x = values at the unknowns of the term, image = H_i x.
+        void multiply(const Term& t, const Values<double>& values) {
+            const auto room = static_cast<std::size_t>(detail::packed_room(t.size()));
+            if (x.size() < room) {
+                x.resize(room);
+                image.resize(room);
             }
-            local[q] += sum;
+            for (std::size_t p = 0; p < room; ++p) {
+                x[p] = p < t.columns.size() ? values(t.columns[p]) : 0.;
+            }
+            detail::packed_product(t.hessian, t.size(), x.data(), image.data());
         }
+    };
+
+    /// The gradient of one term into `scratch.image`; returns Phi_i.
+    double term_gradient(Index i, const Values<double>& theta, Scratch& scratch) const {
+        const Term t = term(i);
+        scratch.multiply(t, theta);
+        double value = t.constant;
+        for (std::size_t p = 0; p < t.columns.size(); ++p) {
+            value += scratch.x[p] * (0.5 * scratch.image[p] - t.linear[p]);
+            scratch.image[p] -= t.linear[p];
+        }
+        return value;
+    }
+
+    static void add(const Term& t, const Scratch& scratch, Values<double>& result) {
+        for (std::size_t p = 0; p < t.columns.size(); ++p) {
+            result(t.columns[p]) += scratch.image[p];
+        }
+    }
+
+    [[nodiscard]] double ridge_value(const Values<double>& theta) const {
+        return 0.5 * (m_ridge.array() * (theta - m_centre).array().square()).sum();
     }
 
     std::vector<int> m_node;

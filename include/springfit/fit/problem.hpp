@@ -26,15 +26,17 @@ struct FitProblem {
 /// What a solver of the acceleration fit found.
 struct FitReport {
     Status status = Status::failed;
-    Values<double> theta;              ///< [n_unknowns], within the bounds to the last bit
-    double objective_start = 0;        ///< Phi where the iteration began
-    double objective = 0;              ///< Phi(theta)
-    std::vector<double> history;       ///< Phi after each sweep or iteration
-    int iterations = 0;                ///< sweeps or iterations
-    double seconds = 0;                ///< wall clock of the solver
-    double kkt_residual = 0;           ///< `kkt_residual(problem, theta)`
-    Values<double> lower_multipliers;  ///< >= 0 [n_unknowns]; gradient = lower_multipliers - upper_multipliers
-    Values<double> upper_multipliers;  ///< >= 0 [n_unknowns]
+    Values<double> theta;             ///< [n_unknowns], within the bounds to the last bit
+    double objective_start = 0;       ///< Phi where the iteration began
+    double objective = 0;             ///< Phi(theta)
+    std::vector<double> history;      ///< Phi after each sweep or iteration
+    int iterations = 0;               ///< sweeps or iterations
+    int products = 0;                 ///< products with H, of `exact`
+    int factorisations = 0;           ///< sparse factorisations of H, of `exact`; 0: conjugate gradients were enough
+    double seconds = 0;               ///< wall clock of the solver
+    double kkt_residual = 0;          ///< `kkt_residual(problem, theta)`
+    Values<double> lower_multipliers; ///< >= 0 [n_unknowns]; gradient = lower_multipliers - upper_multipliers
+    Values<double> upper_multipliers; ///< >= 0 [n_unknowns]
     std::vector<SpringParameter> at_lower;        ///< values that lie on their lower bound
     std::vector<SpringParameter> at_upper;        ///< values that lie on their upper bound
     std::vector<SpringParameter> not_identified;  ///< values that no motion excites: they got their prior
@@ -42,11 +44,12 @@ struct FitReport {
 };
 
 /// How far theta is from optimal, free of units: with x = sqrt(H_uu) theta_u and its gradient q,
-/// max |x - clip(x - q, bounds)| / max |q at theta = 0|; 0 exactly at the minimiser.
-[[nodiscard]] inline double kkt_residual(const FitProblem& problem, const Values<double>& theta) {
+/// max |x - clip(x - q, bounds)| / max |q at theta = 0|; 0 exactly at the minimiser. `gradient` is that of Phi at
+/// theta.
+[[nodiscard]] inline double kkt_residual(const FitProblem& problem, const Values<double>& theta,
+                                         const Values<double>& gradient) {
     const Values<double> curvature = problem.objective.curvature();
     const Values<double> linear = problem.objective.linear();
-    const Values<double> gradient = problem.objective.product(theta) - linear;
     double largest = 0;
     double scale = 0;
     for (Index u = 0; u < problem.n_unknowns(); ++u) {
@@ -62,12 +65,16 @@ struct FitReport {
     return scale > 0 ? largest / scale : largest;
 }
 
+[[nodiscard]] inline double kkt_residual(const FitProblem& problem, const Values<double>& theta) {
+    return kkt_residual(problem, theta, problem.objective.product(theta) - problem.objective.linear());
+}
+
 /// Fills in what follows from `report.theta`: objective, residual, multipliers (from the gradient), active bounds.
 inline void complete(const FitProblem& problem, FitReport& report) {
     const Values<double>& theta = report.theta;
-    report.objective = problem.objective.value(theta);
-    report.kkt_residual = kkt_residual(problem, theta);
-    const Values<double> gradient = problem.objective.gradient(theta);
+    Values<double> gradient;
+    report.objective = problem.objective.evaluate(theta, gradient);
+    report.kkt_residual = kkt_residual(problem, theta, gradient);
     report.lower_multipliers = Values<double>::Zero(theta.size());
     report.upper_multipliers = Values<double>::Zero(theta.size());
     std::vector<int> low;

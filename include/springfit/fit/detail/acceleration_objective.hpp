@@ -6,7 +6,7 @@
 namespace springfit {
 
 template <int Dim, std::floating_point Scalar>
-    requires SpatialDimension<Dim>
+requires SpatialDimension<Dim>
 void AccelerationObjective<Dim, Scalar>::index_springs(const SpringNetwork<Dim, Scalar>& network) {
     const auto known = [&](ParameterKind kind, const Values<Scalar>& given) {
         const Values<double> values = given.template cast<double>();
@@ -59,8 +59,8 @@ void AccelerationObjective<Dim, Scalar>::index_springs(const SpringNetwork<Dim, 
                 const int u = m_parameters.unknown(kind, end.spring);
                 end.column[k] = -1;
                 if (u >= 0) {
-                    const auto column = std::lower_bound(m_columns.begin() + first, m_columns.end(), u) -
-                                        (m_columns.begin() + first);
+                    const auto column =
+                        std::lower_bound(m_columns.begin() + first, m_columns.end(), u) - (m_columns.begin() + first);
                     end.column[k] = static_cast<int>(column);
                     end.first[k] = !written[static_cast<std::size_t>(column)];
                     written[static_cast<std::size_t>(column)] = true;
@@ -75,7 +75,7 @@ void AccelerationObjective<Dim, Scalar>::index_springs(const SpringNetwork<Dim, 
 }
 
 template <int Dim, std::floating_point Scalar>
-    requires SpatialDimension<Dim>
+requires SpatialDimension<Dim>
 void AccelerationObjective<Dim, Scalar>::flush() {
     if (m_batch.size() == 0) {
         return;
@@ -96,7 +96,7 @@ void AccelerationObjective<Dim, Scalar>::flush() {
 /// Adds [A y]'[A y] of one node over the frames of the batch, A theta being the springs' part of its weighted
 /// acceleration and y what they have to reach.
 template <int Dim, std::floating_point Scalar>
-    requires SpatialDimension<Dim>
+requires SpatialDimension<Dim>
 void AccelerationObjective<Dim, Scalar>::add_node(
     Index node, Eigen::Matrix<double, detail::FrameBatch<Dim, Scalar>::rows, Eigen::Dynamic>& equations) {
     using Lanes = typename detail::FrameBatch<Dim, Scalar>::Lanes;
@@ -162,9 +162,22 @@ void AccelerationObjective<Dim, Scalar>::add_node(
 }
 
 template <int Dim, std::floating_point Scalar>
-    requires SpatialDimension<Dim>
-FitProblem AccelerationObjective<Dim, Scalar>::problem() {
+requires SpatialDimension<Dim> FitProblem AccelerationObjective<Dim, Scalar>::problem()
+&{
     flush();
+    return take_problem(m_gram);
+}
+
+template <int Dim, std::floating_point Scalar>
+requires SpatialDimension<Dim> FitProblem AccelerationObjective<Dim, Scalar>::problem() && {
+    flush();
+    m_batch = {};
+    return take_problem(std::move(m_gram));
+}
+
+/// Turns the triangles of [A y]'[A y] into the node terms, in place: what goes into a term lies behind where it goes.
+template <int Dim, std::floating_point Scalar>
+requires SpatialDimension<Dim> FitProblem AccelerationObjective<Dim, Scalar>::take_problem(std::vector<double> gram) {
     std::vector<bool> used(static_cast<std::size_t>(m_parameters.n_unknowns()), false);
     for (std::size_t i = 0; i < m_seen_free.size(); ++i) {
         for (Index c = m_column_begin[i]; m_seen_free[i] && c < m_column_begin[i + 1]; ++c) {
@@ -177,38 +190,40 @@ FitProblem AccelerationObjective<Dim, Scalar>::problem() {
         renumbered[u] = used[u] ? n_used++ : -1;
     }
 
-    FitProblem problem;
-    problem.parameters = m_parameters.subset(used);
-    problem.objective = NodeQuadratic(n_used);
-    std::vector<int> columns;
-    std::vector<double> hessian;
-    std::vector<double> linear;
+    NodeQuadratic::Terms terms;
+    std::size_t to = 0;
     for (std::size_t i = 0; i < m_seen_free.size(); ++i) {
         if (!m_seen_free[i]) {
             continue;
         }
-        columns.clear();
-        hessian.clear();
-        linear.clear();
+        const Index n = m_column_begin[i + 1] - m_column_begin[i];
         for (Index c = m_column_begin[i]; c < m_column_begin[i + 1]; ++c) {
-            columns.push_back(renumbered[static_cast<std::size_t>(m_columns[static_cast<std::size_t>(c)])]);
+            terms.columns.push_back(renumbered[static_cast<std::size_t>(m_columns[static_cast<std::size_t>(c)])]);
         }
-        const double* gram = m_gram.data() + m_gram_begin[i];
-        for (std::size_t p = 0; p < columns.size(); ++p) {
-            for (std::size_t q = p; q < columns.size(); ++q) {
-                hessian.push_back(2 * *gram++);
+        auto from = static_cast<std::size_t>(m_gram_begin[i]);
+        for (Index p = 0; p < n; ++p) {
+            for (Index q = p; q < n; ++q) {
+                gram[to++] = 2 * gram[from++];
             }
-            linear.push_back(2 * *gram++);
+            terms.linear.push_back(2 * gram[from++]);
         }
-        problem.objective.add_term(static_cast<int>(i), columns, hessian, linear, *gram);
+        terms.node.push_back(static_cast<int>(i));
+        terms.size.push_back(static_cast<int>(n));
+        terms.constant.push_back(gram[from]);
     }
+    gram.resize(to);
+    terms.hessian = std::move(gram);
+
+    FitProblem problem;
+    problem.parameters = m_parameters.subset(used);
+    problem.objective = NodeQuadratic(n_used, std::move(terms));
     identify(problem);
     return problem;
 }
 
 /// Sets bounds, prior and ridge, and holds what no motion excites at its prior.
 template <int Dim, std::floating_point Scalar>
-    requires SpatialDimension<Dim>
+requires SpatialDimension<Dim>
 void AccelerationObjective<Dim, Scalar>::identify(FitProblem& problem) const {
     problem.lower = problem.parameters.lower();
     problem.upper = problem.parameters.upper();
