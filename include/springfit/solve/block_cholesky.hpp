@@ -10,13 +10,13 @@ namespace springfit {
 /// Several vectors over the coordinates of all nodes, side by side `[Dim * n_nodes x n_columns]`, one row contiguous,
 /// so that what is done to all columns alike runs as vector instructions. The number of columns is a multiple of
 /// `block_lanes`.
-using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using ColumnBlock = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 inline constexpr int block_lanes = 4;    ///< columns that are handled at once
 inline constexpr int block_columns = 16; ///< most columns of a block
 
 /// The lanes of one row of a block.
-using Lanes = Eigen::Array<double, block_lanes, 1>;
+using ColumnLanes = Eigen::Array<double, block_lanes, 1>;
 
 /// Sparse Cholesky factor L L' of a symmetric positive definite matrix over the free coordinates, applied to whole
 /// blocks of right-hand sides: the factor is read once for all columns. Immutable once factorised, so threads may share
@@ -57,8 +57,8 @@ public:
     }
 
     /// solution = A^-1 right-hand sides; rows of clamped nodes are not read and come out as 0. O(entries x columns).
-    void solve(const Block& right, Block& solution) const {
-        Block work(static_cast<Index>(m_rows.size()), right.cols());
+    void solve(const ColumnBlock& right, ColumnBlock& solution) const {
+        ColumnBlock work(static_cast<Index>(m_rows.size()), right.cols());
         for (std::size_t r = 0; r < m_rows.size(); ++r) {
             work.row(static_cast<Index>(r)) = right.row(m_rows[r]);
         }
@@ -81,7 +81,7 @@ private:
     [[nodiscard]] const SparseMatrix<double>& entries() const { return m_factor.matrixL().nestedExpression(); }
 
     template <int Columns>
-    void substitute(Block& work) const {
+    void substitute(ColumnBlock& work) const {
         using Row = Eigen::Array<double, Columns, 1>;
         const auto& l = entries();
         const int* begin = l.outerIndexPtr();

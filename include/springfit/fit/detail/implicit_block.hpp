@@ -20,7 +20,7 @@ struct ImplicitSystem {
     double damping = 0; ///< d
 
     /// Sets the rows of clamped nodes to 0.
-    void hold(Block& block) const {
+    void hold(ColumnBlock& block) const {
         for (int node : clamped) {
             block.middleRows<Dim>(Dim * node).setZero();
         }
@@ -28,14 +28,15 @@ struct ImplicitSystem {
 
     [[nodiscard]] bool is_damped() const { return damping > 0 && (network.damping.array() > 0).any(); }
 
-    void add_inertia(const Block& direction, double sign, Block& product) const {
+    void add_inertia(const ColumnBlock& direction, double sign, ColumnBlock& product) const {
         for (Index i = 0; inertia > 0 && i < network.n_nodes(); ++i) {
             product.middleRows<Dim>(Dim * i) += sign * inertia * network.mass(i) * direction.middleRows<Dim>(Dim * i);
         }
     }
 
     /// product = (w M + K(y) + d D(old)) direction, for a direction that leaves clamped nodes where they are.
-    void multiply(const Block& y, const Block& old, Curvature curvature, const Block& direction, Block& product) const {
+    void multiply(const ColumnBlock& y, const ColumnBlock& old, Curvature curvature, const ColumnBlock& direction,
+                  ColumnBlock& product) const {
         product.setZero(y.rows(), y.cols());
         add_stiffness_product<Dim>(network, y, curvature, direction, product);
         add_inertia(direction, 1, product);
@@ -46,7 +47,8 @@ struct ImplicitSystem {
     }
 
     /// What is out of balance: external + f_elastic(y) - w M (y - target) - d D(old) (y - old).
-    void unbalanced(const Block& y, const Block& target, const Block& old, const Block& external, Block& force) const {
+    void unbalanced(const ColumnBlock& y, const ColumnBlock& target, const ColumnBlock& old,
+                    const ColumnBlock& external, ColumnBlock& force) const {
         force = external;
         add_elastic_forces<Dim>(network, y, force);
         if (inertia > 0) {
@@ -59,19 +61,19 @@ struct ImplicitSystem {
     }
 
     /// The function whose gradient is minus that, per column, J.
-    [[nodiscard]] Eigen::ArrayXd energy(const Block& y, const Block& target, const Block& old,
-                                        const Block& external) const {
+    [[nodiscard]] Eigen::ArrayXd energy(const ColumnBlock& y, const ColumnBlock& target, const ColumnBlock& old,
+                                        const ColumnBlock& external) const {
         Eigen::ArrayXd energy = elastic_energy<Dim>(network, y);
-        const Block away = y - target;
+        const ColumnBlock away = y - target;
         energy -= external.cwiseProduct(away).colwise().sum().transpose().array();
         if (inertia > 0) {
-            Block force = Block::Zero(y.rows(), y.cols());
+            ColumnBlock force = ColumnBlock::Zero(y.rows(), y.cols());
             add_inertia(away, 0.5, force);
             energy += force.cwiseProduct(away).colwise().sum().transpose().array();
         }
         if (is_damped()) {
-            const Block moved = y - old;
-            Block force = Block::Zero(y.rows(), y.cols());
+            const ColumnBlock moved = y - old;
+            ColumnBlock force = ColumnBlock::Zero(y.rows(), y.cols());
             add_damping_product<Dim>(network, old, damping / 2, moved, force);
             energy += force.cwiseProduct(moved).colwise().sum().transpose().array();
         }
@@ -79,26 +81,26 @@ struct ImplicitSystem {
     }
 };
 
-inline Eigen::ArrayXd column_dots(const Block& a, const Block& b) {
+inline Eigen::ArrayXd column_dots(const ColumnBlock& a, const ColumnBlock& b) {
     return a.cwiseProduct(b).colwise().sum().transpose().array();
 }
 
-inline Eigen::ArrayXd column_maxima(const Block& a) {
+inline Eigen::ArrayXd column_maxima(const ColumnBlock& a) {
     return a.cwiseAbs().colwise().maxCoeff().transpose().array();
 }
 
 /// Conjugate gradients on every column at once, until |residual| <= tolerance |right| in each. False where some column
 /// met negative curvature or did not converge; its solution is then the iterate before, a direction of descent.
 template <class Factor, class Multiply>
-bool conjugate_gradients(const Factor& factor, const Multiply& multiply, const Block& right, double tolerance,
-                         int max_iterations, Block& solution) {
+bool conjugate_gradients(const Factor& factor, const Multiply& multiply, const ColumnBlock& right, double tolerance,
+                         int max_iterations, ColumnBlock& solution) {
     const Eigen::ArrayXd goal = tolerance * column_dots(right, right).sqrt();
     solution.setZero(right.rows(), right.cols());
-    Block residual = right;
-    Block z;
+    ColumnBlock residual = right;
+    ColumnBlock z;
     factor.solve(residual, z);
-    Block direction = z;
-    Block product;
+    ColumnBlock direction = z;
+    ColumnBlock product;
     Eigen::ArrayXd rz = column_dots(residual, z);
     Eigen::ArrayXd active = (rz > 0).cast<double>();
     bool definite = true;
@@ -136,12 +138,12 @@ bool conjugate_gradients(const Factor& factor, const Multiply& multiply, const B
 /// Solves an implicit system for all columns by Newton's method with a line search, from `y` as it stands (clamped
 /// nodes where they shall be). False where some column did not come to balance.
 template <int Dim>
-bool solve_implicit(const ImplicitSystem<Dim>& system, const Block& target, const Block& old, const Block& external,
-                    Block& y) {
+bool solve_implicit(const ImplicitSystem<Dim>& system, const ColumnBlock& target, const ColumnBlock& old,
+                    const ColumnBlock& external, ColumnBlock& y) {
     constexpr int max_iterations = 200;
     constexpr double tolerance = 1e-10; // of the largest force that moves a node
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
-    Block force;
+    ColumnBlock force;
     system.unbalanced(y, target, old, external, force);
     Eigen::ArrayXd unbalanced = column_maxima(force);
     double stiffest = system.inertia > 0 ? system.inertia * system.network.mass.maxCoeff() : 0.;
@@ -151,7 +153,7 @@ bool solve_implicit(const ImplicitSystem<Dim>& system, const Block& target, cons
     Eigen::ArrayXd goal = (tolerance * largest).max(rounding);
     bool near = true;
     Eigen::ArrayXd energy = system.energy(y, target, old, external);
-    Block direction;
+    ColumnBlock direction;
     for (int iteration = 0; iteration < max_iterations; ++iteration) {
         if (!unbalanced.allFinite()) {
             return false;
@@ -162,8 +164,8 @@ bool solve_implicit(const ImplicitSystem<Dim>& system, const Block& target, cons
         const RotatedFactor<Dim> factor(system.network, system.factor, y);
         const auto newton_step = [&](Curvature curvature) {
             return conjugate_gradients(
-                factor, [&](const Block& p, Block& q) { system.multiply(y, old, curvature, p, q); }, force, 1e-2, 100,
-                direction);
+                factor, [&](const ColumnBlock& p, ColumnBlock& q) { system.multiply(y, old, curvature, p, q); }, force,
+                1e-2, 100, direction);
         };
         // Far from balance, compressed springs make the exact curvature so indefinite that its truncated step is poor.
         near = near || (unbalanced <= 1e-2 * largest).all();
@@ -175,8 +177,8 @@ bool solve_implicit(const ImplicitSystem<Dim>& system, const Block& target, cons
         const Eigen::ArrayXd slope = column_dots(force, direction);
         const Eigen::ArrayXd norm = column_dots(force, force);
         Eigen::ArrayXd length = (unbalanced > goal).cast<double>();
-        Block trial;
-        Block trial_force;
+        ColumnBlock trial;
+        ColumnBlock trial_force;
         Eigen::ArrayXd trial_energy;
         bool accepted = false;
         for (int halving = 0; halving < 30 && !accepted; ++halving) {

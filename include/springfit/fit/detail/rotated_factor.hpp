@@ -12,13 +12,13 @@ template <int Dim>
 class RotatedFactor {
 public:
     /// The rotations at `positions`, none where no spring has turned by more than 0.03. O(springs x columns).
-    RotatedFactor(const SpringNetwork<Dim, double>& network, const BlockCholesky& factor, const Block& positions)
+    RotatedFactor(const SpringNetwork<Dim, double>& network, const BlockCholesky& factor, const ColumnBlock& positions)
         : m_factor(&factor) {
         if (!is_turned(network, positions)) {
             return;
         }
         // A = sum r r0' over the springs at a node; its polar part turns r0 into r as well as a rotation can.
-        m_rotations = Block::Zero(Dim * Dim * network.n_nodes(), positions.cols());
+        m_rotations = ColumnBlock::Zero(Dim * Dim * network.n_nodes(), positions.cols());
         for (Index column = 0; column < positions.cols(); column += block_lanes) {
             for (Index e = 0; e < network.n_springs(); ++e) {
                 const int i = network.springs(0, e);
@@ -28,7 +28,7 @@ public:
                 const double weight = 1 / r0.squaredNorm();
                 for (int a = 0; a < Dim; ++a) {
                     for (int b = 0; b < Dim; ++b) {
-                        const Lanes product = weight * r0(b) * r[a];
+                        const ColumnLanes product = weight * r0(b) * r[a];
                         entry(i, a, b, column) += product;
                         entry(j, a, b, column) += product;
                     }
@@ -40,37 +40,37 @@ public:
         }
     }
 
-    void solve(const Block& right, Block& solution) const {
+    void solve(const ColumnBlock& right, ColumnBlock& solution) const {
         if (m_rotations.size() == 0) {
             m_factor->solve(right, solution);
             return;
         }
-        Block turned(right.rows(), right.cols());
+        ColumnBlock turned(right.rows(), right.cols());
         apply(right, true, turned);
-        Block z;
+        ColumnBlock z;
         m_factor->solve(turned, z);
         solution.resize(right.rows(), right.cols());
         apply(z, false, solution);
     }
 
 private:
-    using Entries = std::array<std::array<Lanes, Dim>, Dim>;
+    using Entries = std::array<std::array<ColumnLanes, Dim>, Dim>;
 
-    Eigen::Map<Lanes> entry(Index node, int a, int b, Index column) {
+    Eigen::Map<ColumnLanes> entry(Index node, int a, int b, Index column) {
         return lanes(m_rotations, Dim * Dim * node + Dim * a + b, column);
     }
-    [[nodiscard]] Eigen::Map<const Lanes> entry(Index node, int a, int b, Index column) const {
+    [[nodiscard]] Eigen::Map<const ColumnLanes> entry(Index node, int a, int b, Index column) const {
         return lanes(m_rotations, Dim * Dim * node + Dim * a + b, column);
     }
 
-    static bool is_turned(const SpringNetwork<Dim, double>& network, const Block& positions) {
+    static bool is_turned(const SpringNetwork<Dim, double>& network, const ColumnBlock& positions) {
         for (Index e = 0; e < network.n_springs(); ++e) {
             const int i = network.springs(0, e);
             const int j = network.springs(1, e);
             const Vector<Dim, double> n = (network.rest_positions.col(j) - network.rest_positions.col(i)).normalized();
             for (Index column = 0; column < positions.cols(); column += block_lanes) {
                 const SpringLanes<Dim> spring(positions, i, j, column);
-                Lanes along = n(0) * spring.n[0];
+                ColumnLanes along = n(0) * spring.n[0];
                 for (int d = 1; d < Dim; ++d) {
                     along += n(d) * spring.n[d];
                 }
@@ -90,23 +90,23 @@ private:
                 x[a][b] = entry(node, a, b, column);
             }
         }
-        Lanes good;
+        ColumnLanes good;
         if constexpr (Dim == 2) {
-            const Lanes c = x[0][0] + x[1][1];
-            const Lanes s = x[1][0] - x[0][1];
-            const Lanes size = (c.square() + s.square()).sqrt();
+            const ColumnLanes c = x[0][0] + x[1][1];
+            const ColumnLanes s = x[1][0] - x[0][1];
+            const ColumnLanes size = (c.square() + s.square()).sqrt();
             good = (size > 0).template cast<double>();
             x = {{{c / size, -s / size}, {s / size, c / size}}};
         } else {
-            Lanes squares = Lanes::Zero();
+            ColumnLanes squares = ColumnLanes::Zero();
             for (int a = 0; a < 3; ++a) {
                 squares += dot<3>(x[a], x[a]);
             }
-            const Lanes scale = (3 / squares).sqrt();
+            const ColumnLanes scale = (3 / squares).sqrt();
             for (int a = 0; a < 3; ++a) {
                 x[a] = scaled<3>(scale, x[a]);
             }
-            Lanes determinant = Lanes::Zero();
+            ColumnLanes determinant = ColumnLanes::Zero();
             for (int iteration = 0; iteration < 12; ++iteration) { // Newton's for the polar part: X <- (X + X^-T) / 2
                 const std::array<LaneVector<3>, 3> cofactors{cross(x[1], x[2]), cross(x[2], x[0]), cross(x[0], x[1])};
                 determinant = dot<3>(x[0], cofactors[0]);
@@ -120,16 +120,16 @@ private:
         }
         for (int a = 0; a < Dim; ++a) {
             for (int b = 0; b < Dim; ++b) {
-                entry(node, a, b, column) = (good > 0).select(x[a][b], Lanes::Constant(a == b ? 1. : 0.));
+                entry(node, a, b, column) = (good > 0).select(x[a][b], ColumnLanes::Constant(a == b ? 1. : 0.));
             }
         }
     }
 
-    void apply(const Block& in, bool transposed, Block& out) const {
+    void apply(const ColumnBlock& in, bool transposed, ColumnBlock& out) const {
         for (Index node = 0; node < in.rows() / Dim; ++node) {
             for (Index column = 0; column < in.cols(); column += block_lanes) {
                 for (int a = 0; a < Dim; ++a) {
-                    Lanes sum = Lanes::Zero();
+                    ColumnLanes sum = ColumnLanes::Zero();
                     for (int b = 0; b < Dim; ++b) {
                         sum += (transposed ? entry(node, b, a, column) : entry(node, a, b, column)) *
                                lanes(in, Dim * node + b, column);
@@ -141,7 +141,7 @@ private:
     }
 
     const BlockCholesky* m_factor;
-    Block m_rotations; ///< [Dim * Dim * n_nodes x n_columns]; empty: none
+    ColumnBlock m_rotations; ///< [Dim * Dim * n_nodes x n_columns]; empty: none
 };
 
 } // namespace springfit::detail

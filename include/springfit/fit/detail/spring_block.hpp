@@ -12,11 +12,11 @@
 namespace springfit::detail {
 
 template <int Dim>
-using LaneVector = std::array<Lanes, Dim>;
+using LaneVector = std::array<ColumnLanes, Dim>;
 
 template <int Dim>
-Lanes dot(const LaneVector<Dim>& a, const LaneVector<Dim>& b) {
-    Lanes sum = a[0] * b[0];
+ColumnLanes dot(const LaneVector<Dim>& a, const LaneVector<Dim>& b) {
+    ColumnLanes sum = a[0] * b[0];
     for (int d = 1; d < Dim; ++d) {
         sum += a[d] * b[d];
     }
@@ -27,16 +27,16 @@ inline LaneVector<3> cross(const LaneVector<3>& a, const LaneVector<3>& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-inline Eigen::Map<const Lanes> lanes(const Block& block, Index row, Index column) {
-    return Eigen::Map<const Lanes>(block.data() + row * block.cols() + column);
+inline Eigen::Map<const ColumnLanes> lanes(const ColumnBlock& block, Index row, Index column) {
+    return Eigen::Map<const ColumnLanes>(block.data() + row * block.cols() + column);
 }
 
-inline Eigen::Map<Lanes> lanes(Block& block, Index row, Index column) {
-    return Eigen::Map<Lanes>(block.data() + row * block.cols() + column);
+inline Eigen::Map<ColumnLanes> lanes(ColumnBlock& block, Index row, Index column) {
+    return Eigen::Map<ColumnLanes>(block.data() + row * block.cols() + column);
 }
 
 template <int Dim>
-LaneVector<Dim> difference(const Block& block, int j, int i, Index column) {
+LaneVector<Dim> difference(const ColumnBlock& block, int j, int i, Index column) {
     LaneVector<Dim> result;
     for (int d = 0; d < Dim; ++d) {
         result[d] = lanes(block, Dim * j + d, column) - lanes(block, Dim * i + d, column);
@@ -46,7 +46,7 @@ LaneVector<Dim> difference(const Block& block, int j, int i, Index column) {
 
 /// Adds `force` to node i and takes it from node j.
 template <int Dim>
-void add_pair(Block& forces, int i, int j, Index column, const LaneVector<Dim>& force) {
+void add_pair(ColumnBlock& forces, int i, int j, Index column, const LaneVector<Dim>& force) {
     for (int d = 0; d < Dim; ++d) {
         lanes(forces, Dim * i + d, column) += force[d];
         lanes(forces, Dim * j + d, column) -= force[d];
@@ -54,7 +54,7 @@ void add_pair(Block& forces, int i, int j, Index column, const LaneVector<Dim>& 
 }
 
 template <int Dim>
-LaneVector<Dim> scaled(const Lanes& factor, const LaneVector<Dim>& v) {
+LaneVector<Dim> scaled(const ColumnLanes& factor, const LaneVector<Dim>& v) {
     LaneVector<Dim> result;
     for (int d = 0; d < Dim; ++d) {
         result[d] = factor * v[d];
@@ -66,12 +66,13 @@ LaneVector<Dim> scaled(const Lanes& factor, const LaneVector<Dim>& v) {
 template <int Dim>
 struct SpringLanes {
     LaneVector<Dim> n;
-    Lanes length;
-    Lanes inverse_length;
+    ColumnLanes length;
+    ColumnLanes inverse_length;
 
-    SpringLanes(const Block& positions, int i, int j, Index column) : n(difference<Dim>(positions, j, i, column)) {
+    SpringLanes(const ColumnBlock& positions, int i, int j, Index column)
+        : n(difference<Dim>(positions, j, i, column)) {
         length = dot<Dim>(n, n).sqrt();
-        inverse_length = (length > 0).select(1 / length, Lanes::Zero());
+        inverse_length = (length > 0).select(1 / length, ColumnLanes::Zero());
         n = scaled<Dim>(inverse_length, n);
     }
 };
@@ -82,10 +83,10 @@ template <int Dim>
 struct CellLanes {
     std::array<LaneVector<Dim>, Dim> sides;
     std::array<LaneVector<Dim>, Dim> gradient;
-    Lanes volume;
+    ColumnLanes volume;
 
     template <class Corners>
-    CellLanes(const Block& positions, const Corners& corners, Index column) {
+    CellLanes(const ColumnBlock& positions, const Corners& corners, Index column) {
         for (int a = 0; a < Dim; ++a) {
             sides[a] = difference<Dim>(positions, corners(a + 1), corners(0), column);
         }
@@ -94,7 +95,7 @@ struct CellLanes {
             gradient[1] = {-sides[0][1] / 2, sides[0][0] / 2};
         } else {
             for (int a = 0; a < 3; ++a) {
-                gradient[a] = scaled<3>(Lanes::Constant(1. / 6), cross(sides[(a + 1) % 3], sides[(a + 2) % 3]));
+                gradient[a] = scaled<3>(ColumnLanes::Constant(1. / 6), cross(sides[(a + 1) % 3], sides[(a + 2) % 3]));
             }
         }
         volume = dot<Dim>(sides[0], gradient[0]);
@@ -119,8 +120,8 @@ struct CellLanes {
     }
 
     /// The change of the volume when the sides change by `moved`.
-    [[nodiscard]] Lanes volume_along(const std::array<LaneVector<Dim>, Dim>& moved) const {
-        Lanes sum = dot<Dim>(gradient[0], moved[0]);
+    [[nodiscard]] ColumnLanes volume_along(const std::array<LaneVector<Dim>, Dim>& moved) const {
+        ColumnLanes sum = dot<Dim>(gradient[0], moved[0]);
         for (int a = 1; a < Dim; ++a) {
             sum += dot<Dim>(gradient[a], moved[a]);
         }
@@ -130,7 +131,7 @@ struct CellLanes {
 
 /// The sides of a cell in a block of displacements.
 template <int Dim, class Corners>
-std::array<LaneVector<Dim>, Dim> sides_of(const Block& block, const Corners& corners, Index column) {
+std::array<LaneVector<Dim>, Dim> sides_of(const ColumnBlock& block, const Corners& corners, Index column) {
     std::array<LaneVector<Dim>, Dim> sides;
     for (int a = 0; a < Dim; ++a) {
         sides[a] = difference<Dim>(block, corners(a + 1), corners(0), column);
@@ -140,7 +141,7 @@ std::array<LaneVector<Dim>, Dim> sides_of(const Block& block, const Corners& cor
 
 /// Adds `factor * v_a` at corner a of a cell, and minus the sum of them at corner 0.
 template <int Dim, class Corners>
-void add_cell(Block& forces, const Corners& corners, Index column, const Lanes& factor,
+void add_cell(ColumnBlock& forces, const Corners& corners, Index column, const ColumnLanes& factor,
               const std::array<LaneVector<Dim>, Dim>& v) {
     for (int a = 0; a < Dim; ++a) {
         add_pair<Dim>(forces, corners(a + 1), corners(0), column, scaled<Dim>(factor, v[a]));
@@ -149,10 +150,10 @@ void add_cell(Block& forces, const Corners& corners, Index column, const Lanes& 
 
 /// Elastic energy of each column [n_columns], J.
 template <int Dim>
-Eigen::ArrayXd elastic_energy(const SpringNetwork<Dim, double>& network, const Block& positions) {
+Eigen::ArrayXd elastic_energy(const SpringNetwork<Dim, double>& network, const ColumnBlock& positions) {
     Eigen::ArrayXd energy = Eigen::ArrayXd::Zero(positions.cols());
     for (Index column = 0; column < positions.cols(); column += block_lanes) {
-        Lanes twice = Lanes::Zero();
+        ColumnLanes twice = ColumnLanes::Zero();
         for (Index e = 0; e < network.n_springs(); ++e) {
             const auto r = difference<Dim>(positions, network.springs(1, e), network.springs(0, e), column);
             twice += network.stiffness(e) * (dot<Dim>(r, r).sqrt() - network.rest_length(e)).square();
@@ -169,18 +170,18 @@ Eigen::ArrayXd elastic_energy(const SpringNetwork<Dim, double>& network, const B
 
 /// forces += minus the gradient of the elastic energy, N.
 template <int Dim>
-void add_elastic_forces(const SpringNetwork<Dim, double>& network, const Block& positions, Block& forces) {
+void add_elastic_forces(const SpringNetwork<Dim, double>& network, const ColumnBlock& positions, ColumnBlock& forces) {
     for (Index column = 0; column < positions.cols(); column += block_lanes) {
         for (Index e = 0; e < network.n_springs(); ++e) {
             const int i = network.springs(0, e);
             const int j = network.springs(1, e);
             const SpringLanes<Dim> spring(positions, i, j, column);
-            const Lanes tension = network.stiffness(e) * (spring.length - network.rest_length(e));
+            const ColumnLanes tension = network.stiffness(e) * (spring.length - network.rest_length(e));
             add_pair<Dim>(forces, i, j, column, scaled<Dim>(tension, spring.n));
         }
         for (Index c = 0; c < network.n_cells(); ++c) {
             const CellLanes<Dim> cell(positions, network.cells.col(c), column);
-            const Lanes pressure = network.volume_stiffness(c) * (1 - cell.volume / network.rest_volume(c));
+            const ColumnLanes pressure = network.volume_stiffness(c) * (1 - cell.volume / network.rest_volume(c));
             add_cell<Dim>(forces, network.cells.col(c), column, pressure, cell.gradient);
         }
     }
@@ -189,8 +190,8 @@ void add_elastic_forces(const SpringNetwork<Dim, double>& network, const Block& 
 /// product += K(positions) direction, K the Hessian of the elastic energy, exact or made positive semidefinite as
 /// `add_stiffness` does.
 template <int Dim>
-void add_stiffness_product(const SpringNetwork<Dim, double>& network, const Block& positions, Curvature curvature,
-                           const Block& direction, Block& product) {
+void add_stiffness_product(const SpringNetwork<Dim, double>& network, const ColumnBlock& positions, Curvature curvature,
+                           const ColumnBlock& direction, ColumnBlock& product) {
     const bool exact = curvature == Curvature::exact;
     for (Index column = 0; column < positions.cols(); column += block_lanes) {
         for (Index e = 0; e < network.n_springs(); ++e) {
@@ -198,11 +199,11 @@ void add_stiffness_product(const SpringNetwork<Dim, double>& network, const Bloc
             const int j = network.springs(1, e);
             const SpringLanes<Dim> spring(positions, i, j, column);
             const auto moved = difference<Dim>(direction, j, i, column);
-            Lanes across = network.stiffness(e) * (1 - network.rest_length(e) * spring.inverse_length);
+            ColumnLanes across = network.stiffness(e) * (1 - network.rest_length(e) * spring.inverse_length);
             if (!exact) {
                 across = across.max(0.);
             }
-            const Lanes along = (network.stiffness(e) - across) * dot<Dim>(spring.n, moved);
+            const ColumnLanes along = (network.stiffness(e) - across) * dot<Dim>(spring.n, moved);
             LaneVector<Dim> force;
             for (int d = 0; d < Dim; ++d) {
                 force[d] = along * spring.n[d] + across * moved[d];
@@ -228,14 +229,14 @@ void add_stiffness_product(const SpringNetwork<Dim, double>& network, const Bloc
 
 /// product += factor * D direction, D = sum c_e n_e n_e' with n_e at `positions`.
 template <int Dim>
-void add_damping_product(const SpringNetwork<Dim, double>& network, const Block& positions, double factor,
-                         const Block& direction, Block& product) {
+void add_damping_product(const SpringNetwork<Dim, double>& network, const ColumnBlock& positions, double factor,
+                         const ColumnBlock& direction, ColumnBlock& product) {
     for (Index column = 0; column < positions.cols(); column += block_lanes) {
         for (Index e = 0; e < network.n_springs(); ++e) {
             const int i = network.springs(0, e);
             const int j = network.springs(1, e);
             const SpringLanes<Dim> spring(positions, i, j, column);
-            const Lanes rate = dot<Dim>(spring.n, difference<Dim>(direction, j, i, column));
+            const ColumnLanes rate = dot<Dim>(spring.n, difference<Dim>(direction, j, i, column));
             add_pair<Dim>(product, j, i, column, scaled<Dim>(factor * network.damping(e) * rate, spring.n));
         }
     }
@@ -243,8 +244,8 @@ void add_damping_product(const SpringNetwork<Dim, double>& network, const Block&
 
 /// derivative += d(test . D(positions) rates) / d(positions), by the directions of the springs.
 template <int Dim>
-void add_damping_derivative(const SpringNetwork<Dim, double>& network, const Block& positions, const Block& rates,
-                            const Block& test, double factor, Block& derivative) {
+void add_damping_derivative(const SpringNetwork<Dim, double>& network, const ColumnBlock& positions,
+                            const ColumnBlock& rates, const ColumnBlock& test, double factor, ColumnBlock& derivative) {
     for (Index column = 0; column < positions.cols(); column += block_lanes) {
         for (Index e = 0; e < network.n_springs(); ++e) {
             const int i = network.springs(0, e);
@@ -252,9 +253,9 @@ void add_damping_derivative(const SpringNetwork<Dim, double>& network, const Blo
             const SpringLanes<Dim> spring(positions, i, j, column);
             const auto rate = difference<Dim>(rates, j, i, column);
             const auto tested = difference<Dim>(test, j, i, column);
-            const Lanes rate_along = dot<Dim>(spring.n, rate);
-            const Lanes test_along = dot<Dim>(spring.n, tested);
-            const Lanes scale = factor * network.damping(e) * spring.inverse_length;
+            const ColumnLanes rate_along = dot<Dim>(spring.n, rate);
+            const ColumnLanes test_along = dot<Dim>(spring.n, tested);
+            const ColumnLanes scale = factor * network.damping(e) * spring.inverse_length;
             LaneVector<Dim> change; // of the spring's vector r
             for (int d = 0; d < Dim; ++d) {
                 change[d] =
@@ -268,19 +269,19 @@ void add_damping_derivative(const SpringNetwork<Dim, double>& network, const Blo
 /// forces += the change of the elastic forces with the network's stiffness, rest length and volume stiffness.
 template <int Dim>
 void add_parameter_forces(const SpringNetwork<Dim, double>& network, const NetworkValues& change,
-                          const Block& positions, Block& forces) {
+                          const ColumnBlock& positions, ColumnBlock& forces) {
     for (Index column = 0; column < positions.cols(); column += block_lanes) {
         for (Index e = 0; e < network.n_springs(); ++e) {
             const int i = network.springs(0, e);
             const int j = network.springs(1, e);
             const SpringLanes<Dim> spring(positions, i, j, column);
-            const Lanes tension = change.stiffness(e) * (spring.length - network.rest_length(e)) -
-                                  network.stiffness(e) * change.rest_length(e);
+            const ColumnLanes tension = change.stiffness(e) * (spring.length - network.rest_length(e)) -
+                                        network.stiffness(e) * change.rest_length(e);
             add_pair<Dim>(forces, i, j, column, scaled<Dim>(tension, spring.n));
         }
         for (Index c = 0; c < network.n_cells(); ++c) {
             const CellLanes<Dim> cell(positions, network.cells.col(c), column);
-            const Lanes pressure = change.volume_stiffness(c) * (1 - cell.volume / network.rest_volume(c));
+            const ColumnLanes pressure = change.volume_stiffness(c) * (1 - cell.volume / network.rest_volume(c));
             add_cell<Dim>(forces, network.cells.col(c), column, pressure, cell.gradient);
         }
     }
@@ -289,21 +290,21 @@ void add_parameter_forces(const SpringNetwork<Dim, double>& network, const Netwo
 /// derivative += d(test . elastic forces) / d(stiffness, rest length, volume stiffness), summed over the columns: the
 /// transpose of `add_parameter_forces`.
 template <int Dim>
-void add_parameter_derivative(const SpringNetwork<Dim, double>& network, const Block& positions, const Block& test,
-                              NetworkValues& derivative) {
+void add_parameter_derivative(const SpringNetwork<Dim, double>& network, const ColumnBlock& positions,
+                              const ColumnBlock& test, NetworkValues& derivative) {
     for (Index column = 0; column < positions.cols(); column += block_lanes) {
         for (Index e = 0; e < network.n_springs(); ++e) {
             const int i = network.springs(0, e);
             const int j = network.springs(1, e);
             const SpringLanes<Dim> spring(positions, i, j, column);
-            const Lanes along = dot<Dim>(spring.n, difference<Dim>(test, i, j, column));
+            const ColumnLanes along = dot<Dim>(spring.n, difference<Dim>(test, i, j, column));
             derivative.stiffness(e) += (along * (spring.length - network.rest_length(e))).sum();
             derivative.rest_length(e) -= network.stiffness(e) * along.sum();
         }
         for (Index c = 0; c < network.n_cells(); ++c) {
             const auto corners = network.cells.col(c);
             const CellLanes<Dim> cell(positions, corners, column);
-            const Lanes along = cell.volume_along(sides_of<Dim>(test, corners, column));
+            const ColumnLanes along = cell.volume_along(sides_of<Dim>(test, corners, column));
             derivative.volume_stiffness(c) += (along * (1 - cell.volume / network.rest_volume(c))).sum();
         }
     }
@@ -312,13 +313,13 @@ void add_parameter_derivative(const SpringNetwork<Dim, double>& network, const B
 /// forces += the change of the damping forces -D rates with c; n_e at `positions`.
 template <int Dim>
 void add_damping_parameter_forces(const SpringNetwork<Dim, double>& network, const NetworkValues& change,
-                                  const Block& positions, const Block& rates, Block& forces) {
+                                  const ColumnBlock& positions, const ColumnBlock& rates, ColumnBlock& forces) {
     for (Index column = 0; column < positions.cols(); column += block_lanes) {
         for (Index e = 0; e < network.n_springs(); ++e) {
             const int i = network.springs(0, e);
             const int j = network.springs(1, e);
             const SpringLanes<Dim> spring(positions, i, j, column);
-            const Lanes rate = dot<Dim>(spring.n, difference<Dim>(rates, j, i, column));
+            const ColumnLanes rate = dot<Dim>(spring.n, difference<Dim>(rates, j, i, column));
             add_pair<Dim>(forces, i, j, column, scaled<Dim>(change.damping(e) * rate, spring.n));
         }
     }
@@ -326,15 +327,15 @@ void add_damping_parameter_forces(const SpringNetwork<Dim, double>& network, con
 
 /// derivative += d(test . -D rates) / dc, summed over the columns.
 template <int Dim>
-void add_damping_parameter_derivative(const SpringNetwork<Dim, double>& network, const Block& positions,
-                                      const Block& rates, const Block& test, NetworkValues& derivative) {
+void add_damping_parameter_derivative(const SpringNetwork<Dim, double>& network, const ColumnBlock& positions,
+                                      const ColumnBlock& rates, const ColumnBlock& test, NetworkValues& derivative) {
     for (Index column = 0; column < positions.cols(); column += block_lanes) {
         for (Index e = 0; e < network.n_springs(); ++e) {
             const int i = network.springs(0, e);
             const int j = network.springs(1, e);
             const SpringLanes<Dim> spring(positions, i, j, column);
-            const Lanes rate = dot<Dim>(spring.n, difference<Dim>(rates, j, i, column));
-            const Lanes along = dot<Dim>(spring.n, difference<Dim>(test, i, j, column));
+            const ColumnLanes rate = dot<Dim>(spring.n, difference<Dim>(rates, j, i, column));
+            const ColumnLanes along = dot<Dim>(spring.n, difference<Dim>(test, i, j, column));
             derivative.damping(e) += (rate * along).sum();
         }
     }

@@ -316,7 +316,7 @@ bool TrajectoryPoint<Dim>::has_dense() const {
     }
     constexpr double most = 0.1; // angle by which a spring may have turned
     for (std::size_t b = 0; b < m_tapes.size(); ++b) {
-        const Block& x = m_tapes[b].positions.front();
+        const ColumnBlock& x = m_tapes[b].positions.front();
         for (Index e = 0; e < m_network.n_springs(); ++e) {
             const int i = m_network.springs(0, e);
             const int j = m_network.springs(1, e);
@@ -358,7 +358,7 @@ DenseMatrix<double> TrajectoryPoint<Dim>::dense() {
         m_problem->m_options.execution.for_chunks(chunks, 1, [&](Index, Index chunk, Index) {
             const Index first = chunk * block_columns;
             const Index count = std::min<Index>(block_columns, items - first);
-            Block right = Block::Zero(rows, block_columns);
+            ColumnBlock right = ColumnBlock::Zero(rows, block_columns);
             for (Index c = 0; c < count; ++c) {
                 const Index item = first + c;
                 if (item < springs) {
@@ -370,7 +370,7 @@ DenseMatrix<double> TrajectoryPoint<Dim>::dense() {
                     right.col(c).template segment<Dim>(Dim * j) = -n;
                 } else {
                     const auto corners = m_network.cells.col(item - springs);
-                    Block x(rows, block_lanes);
+                    ColumnBlock x(rows, block_lanes);
                     for (int a = 0; a <= Dim; ++a) {
                         for (int d = 0; d < Dim; ++d) {
                             x.row(Dim * corners(a) + d).setConstant(m_network.rest_positions(d, corners(a)));
@@ -385,7 +385,7 @@ DenseMatrix<double> TrajectoryPoint<Dim>::dense() {
                     }
                 }
             }
-            Block solution;
+            ColumnBlock solution;
             m_factors[g]->solve(right, solution);
             columns.middleCols(first, count) = solution.leftCols(count);
         });
@@ -398,7 +398,7 @@ DenseMatrix<double> TrajectoryPoint<Dim>::dense() {
             if (windows.group != g) {
                 continue;
             }
-            const Block& x = m_tapes[b].positions.front();
+            const ColumnBlock& x = m_tapes[b].positions.front();
             const Index before = tensions.cols();
             tensions.conservativeResize(items, before + x.cols());
             for (Index column = 0; column < x.cols(); column += block_lanes) {

@@ -39,10 +39,10 @@ struct StepRule {
 /// What a simulated block keeps: its states at checkpoints, and all steps of one segment between them.
 template <int Dim>
 struct WindowTape {
-    std::vector<RotatedFactor<Dim>> turned;   ///< of a static case: the factor turned to the equilibrium
-    std::vector<Block> positions, velocities; ///< at the start of each segment; of a static case, the equilibrium
-    Index segment = -1;                       ///< whose steps are kept
-    std::vector<Block> x, v, y;               ///< of each step of that segment
+    std::vector<RotatedFactor<Dim>> turned;         ///< of a static case: the factor turned to the equilibrium
+    std::vector<ColumnBlock> positions, velocities; ///< at the start of each segment; of a static case, the equilibrium
+    Index segment = -1;                             ///< whose steps are kept
+    std::vector<ColumnBlock> x, v, y;               ///< of each step of that segment
 };
 
 /// The motions of a network in one block of windows, and their derivatives.
@@ -66,9 +66,9 @@ public:
         tape = {};
         misfit = 0;
         if (m_windows.frames == 0) {
-            const Block reference = gather(&Motion<Dim, double>::positions, 0, 0);
-            const Block external = gather(&Motion<Dim, double>::external_forces, 0, 0);
-            Block y = near != nullptr && !near->positions.empty() ? near->positions.front() : reference;
+            const ColumnBlock reference = gather(&Motion<Dim, double>::positions, 0, 0);
+            const ColumnBlock external = gather(&Motion<Dim, double>::external_forces, 0, 0);
+            ColumnBlock y = near != nullptr && !near->positions.empty() ? near->positions.front() : reference;
             set_clamped(reference, y);
             if (!solve_implicit<Dim>(m_system, reference, y, external, y)) {
                 y = rest(reference);
@@ -82,8 +82,8 @@ public:
             tape.positions.push_back(std::move(y));
             return true;
         }
-        Block x = gather(&Motion<Dim, double>::positions, 0, 0);
-        Block v = gather(&Motion<Dim, double>::velocities, 0, 0);
+        ColumnBlock x = gather(&Motion<Dim, double>::positions, 0, 0);
+        ColumnBlock v = gather(&Motion<Dim, double>::velocities, 0, 0);
         for (Index segment = 0; segment < n_segments(); ++segment) {
             tape.positions.push_back(x);
             tape.velocities.push_back(v);
@@ -105,8 +105,8 @@ public:
     /// derivative += 1/2 d misfit / d network's values, by the adjoint. False where a state is not stable.
     [[nodiscard]] bool add_gradient(WindowTape<Dim>& tape, NetworkValues& derivative) const {
         if (m_windows.frames == 0) {
-            const Block& y = tape.positions.front();
-            Block z;
+            const ColumnBlock& y = tape.positions.front();
+            ColumnBlock z;
             if (!solve(tape.turned.front(), y, y, weighted(residual(y, 0)), exactly, z)) {
                 return false;
             }
@@ -114,8 +114,8 @@ public:
             return true;
         }
         return backwards(
-            tape, [&](const Block& state, Index frame) { return weighted(residual(state, frame)); },
-            [&](const Block& y, const Block& x, const Block& right, Block& z) {
+            tape, [&](const ColumnBlock& state, Index frame) { return weighted(residual(state, frame)); },
+            [&](const ColumnBlock& y, const ColumnBlock& x, const ColumnBlock& right, ColumnBlock& z) {
                 return solve(RotatedFactor<Dim>(m_system.network, m_system.factor, y), y, x, right, exactly, z);
             },
             true, derivative);
@@ -124,32 +124,33 @@ public:
     /// derivative += J' W J change, J the derivative of the positions but for that of the springs' directions in
     /// damping.
     void add_product(WindowTape<Dim>& tape, const NetworkValues& change, NetworkValues& derivative) const {
-        const auto solve_step = [&](const Block& y, const Block& x, const Block& right, Block& z) {
+        const auto solve_step = [&](const ColumnBlock& y, const ColumnBlock& x, const ColumnBlock& right,
+                                    ColumnBlock& z) {
             (void)solve(RotatedFactor<Dim>(m_system.network, m_system.factor, y), y, x, right, loosely, z);
             return true;
         };
         if (m_windows.frames == 0) {
-            const Block& y = tape.positions.front();
-            Block force = Block::Zero(y.rows(), y.cols());
+            const ColumnBlock& y = tape.positions.front();
+            ColumnBlock force = ColumnBlock::Zero(y.rows(), y.cols());
             add_parameter_forces<Dim>(m_system.network, change, y, force);
             m_system.hold(force);
-            Block u;
+            ColumnBlock u;
             (void)solve(tape.turned.front(), y, y, force, loosely, u);
             (void)solve(tape.turned.front(), y, y, weighted(u), loosely, force);
             add_parameter_derivative<Dim>(m_system.network, y, force, derivative);
             return;
         }
-        const std::vector<Block> moved = forwards(tape, change);
+        const std::vector<ColumnBlock> moved = forwards(tape, change);
         (void)backwards(
-            tape, [&](const Block&, Index frame) { return weighted(moved[static_cast<std::size_t>(frame - 1)]); },
+            tape, [&](const ColumnBlock&, Index frame) { return weighted(moved[static_cast<std::size_t>(frame - 1)]); },
             solve_step, false, derivative);
     }
 
     /// derivative += J' W^(1/2) z for numbers z, one for each coordinate of each frame, from `draw()`.
     template <class Draw>
     void add_probe(WindowTape<Dim>& tape, Draw&& draw, NetworkValues& derivative) const {
-        const auto random = [&](const Block& state) {
-            Block z(state.rows(), state.cols());
+        const auto random = [&](const ColumnBlock& state) {
+            ColumnBlock z(state.rows(), state.cols());
             for (Index column = 0; column < z.cols(); ++column) {
                 for (Index row = 0; row < z.rows(); ++row) {
                     z(row, column) = draw() * std::sqrt(m_windows.weight(column));
@@ -158,19 +159,19 @@ public:
             m_system.hold(z);
             return z;
         };
-        const auto solve = [&](const Block&, const Block&, const Block& right, Block& z) {
+        const auto solve = [&](const ColumnBlock&, const ColumnBlock&, const ColumnBlock& right, ColumnBlock& z) {
             m_system.factor.solve(right, z);
             return true;
         };
         if (m_windows.frames == 0) {
-            const Block& y = tape.positions.front();
-            Block z;
+            const ColumnBlock& y = tape.positions.front();
+            ColumnBlock z;
             m_system.factor.solve(random(y), z);
             add_parameter_derivative<Dim>(m_system.network, y, z, derivative);
             return;
         }
         (void)backwards(
-            tape, [&](const Block& state, Index) { return random(state); }, solve, false, derivative);
+            tape, [&](const ColumnBlock& state, Index) { return random(state); }, solve, false, derivative);
     }
 
 private:
@@ -182,9 +183,9 @@ private:
     }
 
     /// A recorded quantity of each window, `fraction` of the way from one of its frames to the next.
-    [[nodiscard]] Block gather(Frames Motion<Dim, double>::*quantity, Index frame, double fraction) const {
+    [[nodiscard]] ColumnBlock gather(Frames Motion<Dim, double>::*quantity, Index frame, double fraction) const {
         const auto columns = static_cast<Index>(m_windows.motions.size());
-        Block result(Dim * m_system.network.n_nodes(), columns);
+        ColumnBlock result(Dim * m_system.network.n_nodes(), columns);
         for (Index c = 0; c < columns; ++c) {
             const auto& motion = m_motions[m_windows.motions[static_cast<std::size_t>(c)]];
             const auto at = static_cast<std::size_t>(m_windows.first[static_cast<std::size_t>(c)] + frame);
@@ -198,31 +199,31 @@ private:
     }
 
     /// The rest shape in every column, as `like` is sized.
-    [[nodiscard]] Block rest(const Block& like) const {
+    [[nodiscard]] ColumnBlock rest(const ColumnBlock& like) const {
         return m_system.network.rest_positions.reshaped().replicate(1, like.cols());
     }
 
-    void set_clamped(const Block& from, Block& to) const {
+    void set_clamped(const ColumnBlock& from, ColumnBlock& to) const {
         for (int node : m_system.clamped) {
             to.middleRows<Dim>(Dim * node) = from.middleRows<Dim>(Dim * node);
         }
     }
 
     /// x - x_ref at a frame of the windows; 0 at clamped nodes.
-    [[nodiscard]] Block residual(const Block& x, Index frame) const {
-        Block result = x - gather(&Motion<Dim, double>::positions, frame, 0);
+    [[nodiscard]] ColumnBlock residual(const ColumnBlock& x, Index frame) const {
+        ColumnBlock result = x - gather(&Motion<Dim, double>::positions, frame, 0);
         m_system.hold(result);
         return result;
     }
 
-    [[nodiscard]] double weighted_square(const Block& residual) const {
+    [[nodiscard]] double weighted_square(const ColumnBlock& residual) const {
         return (column_dots(residual, residual) * m_windows.weight.array()).sum();
     }
 
-    [[nodiscard]] Block weighted(const Block& block) const { return block * m_windows.weight.asDiagonal(); }
+    [[nodiscard]] ColumnBlock weighted(const ColumnBlock& block) const { return block * m_windows.weight.asDiagonal(); }
 
-    void finish_step(const Block& y, Block& x, Block& v) const {
-        const Block moved = y - x;
+    void finish_step(const ColumnBlock& y, ColumnBlock& x, ColumnBlock& v) const {
+        const ColumnBlock moved = y - x;
         x += moved / m_rule.alpha;
         v += (moved / m_part - v) / m_rule.alpha;
     }
@@ -236,15 +237,15 @@ private:
         tape.x.clear();
         tape.v.clear();
         tape.y.clear();
-        Block x = tape.positions[static_cast<std::size_t>(segment)];
-        Block v = tape.velocities[static_cast<std::size_t>(segment)];
+        ColumnBlock x = tape.positions[static_cast<std::size_t>(segment)];
+        ColumnBlock v = tape.velocities[static_cast<std::size_t>(segment)];
         for (Index s = 0; s < segment_length(segment); ++s) {
             const Index step = segment * m_interval + s;
             const Index frame = step / m_rule.steps_per_frame;
             const double fraction = (static_cast<double>(step % m_rule.steps_per_frame) + m_rule.alpha) /
                                     static_cast<double>(m_rule.steps_per_frame);
-            const Block target = x + m_part * v;
-            Block y = target;
+            const ColumnBlock target = x + m_part * v;
+            ColumnBlock y = target;
             set_clamped(gather(&Motion<Dim, double>::positions, frame, fraction), y);
             if (!solve_implicit<Dim>(m_system, target, x,
                                      gather(&Motion<Dim, double>::external_forces, frame, fraction), y)) {
@@ -267,25 +268,25 @@ private:
     static constexpr Precision exactly{1e-10, 300}; ///< for gradients
     static constexpr Precision loosely{1e-2, 20};   ///< for products with a Gauss-Newton matrix
 
-    [[nodiscard]] bool solve(const RotatedFactor<Dim>& factor, const Block& y, const Block& old, const Block& right,
-                             const Precision& precision, Block& z) const {
+    [[nodiscard]] bool solve(const RotatedFactor<Dim>& factor, const ColumnBlock& y, const ColumnBlock& old,
+                             const ColumnBlock& right, const Precision& precision, ColumnBlock& z) const {
         return conjugate_gradients(
-            factor, [&](const Block& p, Block& q) { m_system.multiply(y, old, Curvature::exact, p, q); }, right,
-            precision.tolerance, precision.max_iterations, z);
+            factor, [&](const ColumnBlock& p, ColumnBlock& q) { m_system.multiply(y, old, Curvature::exact, p, q); },
+            right, precision.tolerance, precision.max_iterations, z);
     }
 
     /// The change of the positions at each frame along a change of the network's values.
-    [[nodiscard]] std::vector<Block> forwards(WindowTape<Dim>& tape, const NetworkValues& change) const {
-        std::vector<Block> frames;
-        Block dx = Block::Zero(tape.positions.front().rows(), tape.positions.front().cols());
-        Block dv = dx;
-        Block dy;
+    [[nodiscard]] std::vector<ColumnBlock> forwards(WindowTape<Dim>& tape, const NetworkValues& change) const {
+        std::vector<ColumnBlock> frames;
+        ColumnBlock dx = ColumnBlock::Zero(tape.positions.front().rows(), tape.positions.front().cols());
+        ColumnBlock dv = dx;
+        ColumnBlock dy;
         for (Index segment = 0; segment < n_segments(); ++segment) {
             (void)run_segment(tape, segment);
             for (Index s = 0; s < segment_length(segment); ++s) {
-                const Block& x = tape.x[static_cast<std::size_t>(s)];
-                const Block& y = tape.y[static_cast<std::size_t>(s)];
-                Block force = Block::Zero(x.rows(), x.cols());
+                const ColumnBlock& x = tape.x[static_cast<std::size_t>(s)];
+                const ColumnBlock& y = tape.y[static_cast<std::size_t>(s)];
+                ColumnBlock force = ColumnBlock::Zero(x.rows(), x.cols());
                 m_system.add_inertia(dx + m_part * dv, 1, force);
                 add_parameter_forces<Dim>(m_system.network, change, y, force);
                 if (m_system.is_damped()) {
@@ -310,33 +311,33 @@ private:
                                  NetworkValues& derivative) const {
         const double alpha = m_rule.alpha;
         const double step_length = m_part / alpha;
-        Block lx = Block::Zero(tape.positions.front().rows(), tape.positions.front().cols());
-        Block lv = lx;
-        Block z;
+        ColumnBlock lx = ColumnBlock::Zero(tape.positions.front().rows(), tape.positions.front().cols());
+        ColumnBlock lv = lx;
+        ColumnBlock z;
         for (Index segment = n_segments() - 1; segment >= 0; --segment) {
             if (!run_segment(tape, segment)) {
                 return false;
             }
             for (Index s = segment_length(segment) - 1; s >= 0; --s) {
-                const Block& x = tape.x[static_cast<std::size_t>(s)];
-                const Block& y = tape.y[static_cast<std::size_t>(s)];
+                const ColumnBlock& x = tape.x[static_cast<std::size_t>(s)];
+                const ColumnBlock& y = tape.y[static_cast<std::size_t>(s)];
                 if (const Index step = segment * m_interval + s + 1; step % m_rule.steps_per_frame == 0) {
-                    const Block end = x + (y - x) / alpha;
+                    const ColumnBlock end = x + (y - x) / alpha;
                     lx += source(end, step / m_rule.steps_per_frame);
                 }
-                const Block ly = lx / alpha + lv / (alpha * alpha * step_length);
+                const ColumnBlock ly = lx / alpha + lv / (alpha * alpha * step_length);
                 if (!solve(y, x, ly, z)) {
                     return false;
                 }
                 add_parameter_derivative<Dim>(m_system.network, y, z, derivative);
                 lx = lx * (1 - 1 / alpha) - lv / (alpha * alpha * step_length);
                 lv *= 1 - 1 / alpha;
-                Block inertial = Block::Zero(x.rows(), x.cols());
+                ColumnBlock inertial = ColumnBlock::Zero(x.rows(), x.cols());
                 m_system.add_inertia(z, 1, inertial);
                 lx += inertial;
                 lv += m_part * inertial;
                 if (m_system.is_damped()) {
-                    const Block rates = m_system.damping * (y - x);
+                    const ColumnBlock rates = m_system.damping * (y - x);
                     add_damping_parameter_derivative<Dim>(m_system.network, x, rates, z, derivative);
                     add_damping_product<Dim>(m_system.network, x, m_system.damping, z, lx);
                     if (with_directions) {
