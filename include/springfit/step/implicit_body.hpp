@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <springfit/core/status.hpp>
+#include <springfit/step/detail/incremental_potential.hpp>
 #include <springfit/step/detail/spring_operator.hpp>
 
 namespace springfit {
@@ -14,15 +14,6 @@ struct ImplicitBodyOptions {
     int max_linear_iterations = 1000;       ///< most conjugate gradients of an iteration, >= 1
     Scalar tolerance = Scalar(1e-8);        ///< ends the iterations: largest unbalanced force relative to the
                                             ///< largest force that moves a node, > 0
-};
-
-/// How an implicit step ended.
-template <std::floating_point Scalar>
-struct ImplicitStepReport {
-    Status status = Status::failed; ///< `iteration_limit` where the tolerance was not reached, or not looked at
-    int iterations = 0;             ///< of Newton's method
-    int linear_iterations = 0;      ///< conjugate gradients, all together
-    Scalar unbalanced = 0;          ///< largest entry of the gradient at the last linearisation, N
 };
 
 /// A network in motion under implicit Euler: stable at any step, first order, and it damps what it does not resolve.
@@ -44,7 +35,7 @@ struct ImplicitStepReport {
 /// same bits as one. A step allocates nothing.
 template <int Dim, std::floating_point ScalarType, std::floating_point LinearScalar = float>
 requires SpatialDimension<Dim>
-class ImplicitBody : public detail::MovingNodes<Dim, ScalarType> {
+class ImplicitBody : public detail::IncrementalPotential<Dim, ScalarType> {
 public:
     using Scalar = ScalarType;
 
@@ -63,42 +54,26 @@ public:
     [[nodiscard]] Points<Dim, Scalar> apply_hessian(const Points<Dim, Scalar>& displacements, Scalar h, bool exact);
 
 private:
-    using Base = detail::MovingNodes<Dim, ScalarType>;
+    using Base = detail::IncrementalPotential<Dim, ScalarType>;
     using Packed = typename Base::Packed;
     using Block = typename Packed::Block;
     using Operator = detail::SpringOperator<Dim, LinearScalar>;
     using Four = detail::Four<Scalar>;
     using Lanes = detail::Simd<Scalar, 4>;
+    using Found = typename Base::Found;
 
-    /// What a pass over a domain finds out.
-    struct Found {
-        Scalar gradient = 0; ///< largest entries
-        Scalar force = 0;
-        Scalar position = 0;
-        double slope = 0; ///< gradient . last direction
-        bool finite = true;
-    };
-
-    void start_step(Scalar h);
+    void set_inertia(Scalar h);
     void iterate(Scalar h, ImplicitStepReport<Scalar>& report);
     [[nodiscard]] bool search(Scalar h, bool exact, double decrease, Found& found);
-    void move(Scalar length);
-    [[nodiscard]] bool finish_step(Scalar h);
     [[nodiscard]] Found linearise(Scalar h, bool exact);
     template <bool Damped, bool OnBothEnds>
     void add_springs(const std::vector<Block>& blocks, typename Operator::Part& part, Scalar h, bool exact);
     void add_cells(const typename Packed::Domain& domain, typename Operator::Domain& target, bool exact);
-    void balance(const typename Packed::Domain& domain, Scalar h, Found& found);
 
     ImplicitBodyOptions<Scalar> m_options;
     Operator m_operator;
     SpringNetwork<Dim, Scalar> m_cells; ///< the cells alone, with the numbers inside
-    bool m_is_damped;
-    std::vector<Four> m_start;                  ///< positions at the start of the step
-    std::vector<Four> m_forces;                 ///< elastic and damping forces at the positions
-    std::vector<Scalar> m_stiffness, m_damping; ///< of all springs (and cells at rest) of a node, N/m and N s/m
-    std::vector<Found> m_found;                 ///< by domain
-    Scalar m_length = 0;                        ///< what the last direction was multiplied with
+    Scalar m_length = 0;                ///< what the last direction was multiplied with
 };
 
 } // namespace springfit

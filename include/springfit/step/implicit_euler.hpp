@@ -43,7 +43,8 @@ public:
 
     [[nodiscard]] Status advance(State<Dim, Scalar>& state, const Scenario<Dim, Scalar>& scenario, Scalar dt) {
         require(dt > 0 && std::isfinite(dt), "dt", "a positive time step", dt);
-        return detail::advance_body<Dim, Scalar>(m_network, m_body, state, scenario, dt);
+        return detail::advance_body<Dim, Scalar>(m_network, m_body, state, scenario, dt,
+                                                 [](Status status) { return status == Status::converged; });
     }
 
 private:

@@ -86,11 +86,11 @@ void finish_frame(const Network& network, const Points<Dim, Scalar>& external, c
     }
 }
 
-/// A frame of one implicit step of a body, external forces and clamps taken at its end. Where the step has not converged
-/// or is not finite, its status, with the state as it was.
-template <int Dim, std::floating_point Scalar, class Body>
+/// A frame of one implicit step of a body, external forces and clamps taken at its end. Returns the step's status, with
+/// the state as it was where `accepts(status)` is false or the state is not finite.
+template <int Dim, std::floating_point Scalar, class Body, class Accepts>
 [[nodiscard]] Status advance_body(const SpringNetwork<Dim, Scalar>& network, Body& body, State<Dim, Scalar>& state,
-                                  const Scenario<Dim, Scalar>& scenario, Scalar dt) {
+                                  const Scenario<Dim, Scalar>& scenario, Scalar dt, const Accepts& accepts) {
     const DrivenScenario<Dim, Scalar> driven(scenario, network.rest_positions);
     State<Dim, Scalar> next;
     next.time = state.time + dt;
@@ -102,7 +102,7 @@ template <int Dim, std::floating_point Scalar, class Body>
         next.time, dt, [&](int node) { return body.position(node); },
         [&](int node, const Vector<Dim, Scalar>& velocity) { body.set_velocity(node, velocity); });
     const Status status = body.step(dt).status;
-    if (status != Status::converged) {
+    if (!accepts(status)) {
         return status;
     }
     body.read(next.positions, next.velocities);
@@ -112,7 +112,7 @@ template <int Dim, std::floating_point Scalar, class Body>
         return Status::diverged;
     }
     state = std::move(next);
-    return Status::converged;
+    return status;
 }
 
 } // namespace springfit::detail
