@@ -84,7 +84,7 @@ void ImplicitBody<Dim, ScalarType, LinearScalar>::iterate(Scalar h, ImplicitStep
             return;
         }
         const bool is_exact = may_be_exact && found.gradient <= Scalar(1e-2) * force;
-        if (!search(h, is_exact, outcome.decrease, found)) {
+        if (!search(h, is_exact, outcome.decrease * static_cast<double>(found.gradient), found)) {
             report.status = found.gradient <= 64 * rounding ? Status::converged : Status::stalled;
             return;
         }

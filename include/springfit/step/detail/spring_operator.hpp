@@ -100,7 +100,7 @@ public:
 
     struct Outcome {
         int iterations = 0;
-        double decrease = 0;     ///< b . x of the scaled right-hand side b and what it gives
+        double decrease = 0;     ///< b . x, b the scaled right-hand side: how steeply the energy falls along x
         bool indefinite = false; ///< stopped at a direction of negative curvature
     };
 
