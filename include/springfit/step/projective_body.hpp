@@ -73,9 +73,7 @@ public:
         }
         this->start_step(h);
         iterate(h, report);
-        if (!this->finish_step(h)) {
-            report.status = Status::diverged;
-        }
+        this->finish_step(h, report.status);
         return report;
     }
 
@@ -93,10 +91,11 @@ private:
                 force = std::max(found.force, found.gradient);
             }
             report.unbalanced = found.gradient;
-            report.status = found.gradient <= std::max(m_options.tolerance * force, 4 * rounding * found.position)
+            report.status = !found.finite ? Status::diverged
+                            : found.gradient <= std::max(m_options.tolerance * force, 4 * rounding * found.position)
                                 ? Status::converged
                                 : Status::iteration_limit;
-            if (report.status == Status::converged || !found.finite) {
+            if (report.status != Status::iteration_limit) {
                 return;
             }
             m_factor.solve(m_residual, m_direction);

@@ -46,9 +46,7 @@ ImplicitBody<Dim, ScalarType, LinearScalar>::step(Scalar h) {
     this->start_step(h);
     set_inertia(h);
     iterate(h, report);
-    if (!this->finish_step(h)) {
-        report.status = Status::diverged;
-    }
+    this->finish_step(h, report.status);
     return report;
 }
 

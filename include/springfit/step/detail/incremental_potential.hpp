@@ -78,8 +78,8 @@ protected:
         });
     }
 
-    /// v = (x - x_n) / h; false, with the body as it was, where that is not finite.
-    [[nodiscard]] bool finish_step(Scalar h) {
+    /// v = (x - x_n) / h; where that is not finite or the step has failed, `diverged`, with the body as it was.
+    void finish_step(Scalar h, Status& status) {
         this->for_domains([&](std::size_t d, const auto& domain) {
             Lanes zero = {};
             for (auto i = static_cast<std::size_t>(domain.begin); i < static_cast<std::size_t>(domain.end); ++i) {
@@ -88,7 +88,7 @@ protected:
             m_found[d] = {};
             m_found[d].finite = zero[0] + zero[1] + zero[2] == 0;
         });
-        const bool finite = found().finite;
+        const bool finite = usable(status) && found().finite;
         this->for_domains([&](std::size_t, const auto& domain) {
             for (auto i = static_cast<std::size_t>(domain.begin); i < static_cast<std::size_t>(domain.end); ++i) {
                 if (!finite) {
@@ -98,7 +98,7 @@ protected:
                 }
             }
         });
-        return finite;
+        status = finite ? status : Status::diverged;
     }
 
     /// x += length d.
