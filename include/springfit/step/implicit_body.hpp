@@ -10,7 +10,7 @@ namespace springfit {
 template <std::floating_point Scalar>
 struct ImplicitBodyOptions {
     int max_iterations = 1;                 ///< most Newton iterations of a step, >= 1
-    Scalar linear_tolerance = Scalar(0.03); ///< relative residual of the first linear solve, in (0, 1)
+    Scalar linear_tolerance = Scalar(0.01); ///< relative residual of the first linear solve, in (0, 1)
     int max_linear_iterations = 1000;       ///< most conjugate gradients of an iteration, >= 1
     Scalar tolerance = Scalar(1e-8);        ///< ends the iterations: largest unbalanced force relative to the
                                             ///< largest force that moves a node, > 0
