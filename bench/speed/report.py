@@ -24,6 +24,7 @@ NAMES = {
     "explicit_step_two_threads": "springfit, explicit step, two threads",
     "batch_step": "springfit, explicit step of 64 bodies",
     "implicit_step": "springfit, implicit step",
+    "implicit_step_tight": "springfit, implicit step, further solved",
     "projective_step": "springfit, projective step",
     "plain_implicit_step": "plain linear implicit step",
     "bullet_world_step": "Bullet soft body, world step",
@@ -58,7 +59,8 @@ class Row:
 
     @property
     def name(self):
-        return NAMES.get(self.what, self.what.replace("_", " "))
+        what, _, factor = re.fullmatch(r"(.*?)(_(\d+))?", self.what).groups()
+        return NAMES.get(what, what.replace("_", " ")) + (f" of {factor} stable steps" if factor else "")
 
 
 class Run:
@@ -153,7 +155,7 @@ def with_ratio(run_, base_of, form):
 
 
 def ns_cell(row):
-    return digits(row.ns)
+    return digits(row.ns) + (f", {row.counters['error']:.0e}" if "error" in row.counters else "")
 
 
 def ms_cell(row):
@@ -210,14 +212,15 @@ def page_of_machine(runs, machine, options):
 
 
 def is_step(row):
-    return re.search(r"(_step|_force|_loop)(_random_order|_two_threads)?$", row.what) is not None
+    return re.search(r"(_step|_force|_loop)(_random_order|_two_threads|_tight)?(_\d+)?$", row.what) is not None
 
 
 def plain_step(row):
     """What a step is compared with."""
     if row.what.endswith("random_order"):
         return ["plain_loop_random_order"]
-    return ["plain_implicit_step", "plain_loop"] if row.what in ("implicit_step", "projective_step") else ["plain_loop"]
+    of_stable_step = re.search(r"_\d+$", row.what)
+    return ["plain_implicit_step" + of_stable_step[0] if of_stable_step else "plain_loop"]
 
 
 def page_of_steps(runs):
@@ -240,11 +243,12 @@ def page_of_steps(runs):
     return (
         "## Time steps\n\nNanoseconds per spring and step, and in brackets the time over the plain loop's in the same run. "
         "`plain loop` is symplectic Euler as written in an hour (bench/speed/plain.hpp); explicit steps are half the stable "
-        "step, implicit ones 30 stable steps from a stretched state. MuJoCo's step is the same mathematics as ours "
+        "step, implicit ones 30 or 100 stable steps, with the error against the converged step relative to its movement; those "
+        "beside peers are from a stretched state. MuJoCo's step is the same mathematics as ours "
         "(three sliding joints per node, a tendon per spring). Bullet's soft body solves constraints on "
         "positions, one pass over them; its deformable body has one stiffness for all springs, and an implicit step is one "
-        "linear solve, to a relative residual of about the root of the precision's epsilon, where ours is Newton's method "
-        "to convergence. Each library is as Debian builds it.\n\n" + page
+        "linear solve, to a relative residual of about the root of the precision's epsilon, where ours is one to a "
+        "hundredth. Each library is as Debian builds it.\n\n" + page
     )
 
 

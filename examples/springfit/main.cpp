@@ -109,11 +109,13 @@ void declare_simulate(CLI::App& app, program::SimulateOptions& options) {
         ->delimiter(',');
     app.add_option("--duration", options.duration, "time to simulate, s")->capture_default_str();
     app.add_option("--frames", options.frames, "frames to write")->capture_default_str();
-    app.add_option("--integrator", options.integrator, "explicit (symplectic Euler) or implicit (implicit Euler)")
-        ->check(CLI::IsMember({"explicit", "implicit"}))
+    app.add_option("--integrator", options.integrator,
+                   "explicit (symplectic Euler), implicit (implicit Euler) or projective (implicit Euler by a few "
+                   "local-global iterations, springs alone)")
+        ->check(CLI::IsMember({"explicit", "implicit", "projective"}))
         ->capture_default_str();
     add_optional(app, "--time-step", options.time_step,
-                 "longest step, s (default: the stable step, or the time between frames for implicit)");
+                 "longest step, s (default: the stable step, or the time between frames for implicit and projective)");
 }
 
 } // namespace

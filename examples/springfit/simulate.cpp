@@ -7,6 +7,7 @@
 #include <springfit/io/motion_file.hpp>
 #include <springfit/motion/record.hpp>
 #include <springfit/step/implicit_euler.hpp>
+#include <springfit/step/projective_euler.hpp>
 #include <springfit/step/symplectic_euler.hpp>
 
 #include "commands.hpp"
@@ -44,6 +45,10 @@ int simulate_model(const io::Model<Dim, double>& model, const SimulateOptions& o
     const auto recording = [&] {
         if (options.integrator == "implicit") {
             ImplicitEuler<Dim, double> stepper(model.network);
+            return record_stepper(stepper, scenario, how);
+        }
+        if (options.integrator == "projective") {
+            ProjectiveEuler<Dim, double> stepper(model.network);
             return record_stepper(stepper, scenario, how);
         }
         SymplecticEuler<Dim, double> stepper(model.network, {.max_substeps = 1000000});

@@ -34,7 +34,9 @@
 #include <springfit/step/biquadratic_equilibrium.hpp>
 #include <springfit/step/biquadratic_euler.hpp>
 #include <springfit/step/equilibrium.hpp>
+#include <springfit/step/implicit_body.hpp>
 #include <springfit/step/implicit_euler.hpp>
+#include <springfit/step/projective_euler.hpp>
 #include <springfit/step/spring_batch.hpp>
 #include <springfit/step/spring_body.hpp>
 #include <springfit/step/static_solver.hpp>

@@ -86,4 +86,33 @@ void finish_frame(const Network& network, const Points<Dim, Scalar>& external, c
     }
 }
 
+/// A frame of one implicit step of a body, external forces and clamps taken at its end. Returns the step's status, with
+/// the state as it was where `accepts(status)` is false or the state is not finite.
+template <int Dim, std::floating_point Scalar, class Body, class Accepts>
+[[nodiscard]] Status advance_body(const SpringNetwork<Dim, Scalar>& network, Body& body, State<Dim, Scalar>& state,
+                                  const Scenario<Dim, Scalar>& scenario, Scalar dt, const Accepts& accepts) {
+    const DrivenScenario<Dim, Scalar> driven(scenario, network.rest_positions);
+    State<Dim, Scalar> next;
+    next.time = state.time + dt;
+    const Points<Dim, Scalar> external = external_forces<Dim, Scalar>(scenario, network.mass, next.time);
+    body.write(state.positions, state.velocities);
+    body.set_clamped(driven.clamped());
+    body.set_external_forces(external);
+    driven.aim_clamps(
+        next.time, dt, [&](int node) { return body.position(node); },
+        [&](int node, const Vector<Dim, Scalar>& velocity) { body.set_velocity(node, velocity); });
+    const Status status = body.step(dt).status;
+    if (!accepts(status)) {
+        return status;
+    }
+    body.read(next.positions, next.velocities);
+    apply_clamps<Dim, Scalar>(scenario, network.rest_positions, next.time, next.positions);
+    finish_frame<Dim, Scalar>(network, external, driven.clamped(), state, next);
+    if (!is_finite<Dim, Scalar>(next)) {
+        return Status::diverged;
+    }
+    state = std::move(next);
+    return status;
+}
+
 } // namespace springfit::detail

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <springfit/motion/state.hpp>
+#include <springfit/step/detail/driven_scenario.hpp>
+#include <springfit/step/projective_body.hpp>
+
+namespace springfit {
+
+/// Implicit Euler by the local-global scheme, as a stepper: a frame is one step of `ProjectiveBody`, external forces
+/// and clamps taken at its end, and good however many iterations it has had. `state.accelerations` is the network's own
+/// at the frame's positions and velocities. A state that is not finite is undone: `diverged`. Model of `Stepper`.
+template <int Dim, std::floating_point ScalarType>
+class ProjectiveEuler {
+public:
+    static constexpr int dimension = Dim;
+    using Scalar = ScalarType;
+
+    /// Throws InvalidArgument for a network or an option that cannot be used.
+    explicit ProjectiveEuler(SpringNetwork<Dim, Scalar> network, const ProjectiveBodyOptions<Scalar>& options = {},
+                             const Execution& execution = {})
+        : m_network(std::move(network)), m_body(m_network, options, execution) {}
+
+    [[nodiscard]] const SpringNetwork<Dim, Scalar>& network() const { return m_network; }
+    [[nodiscard]] const Points<Dim, Scalar>& rest_positions() const { return m_network.rest_positions; }
+    [[nodiscard]] const Values<Scalar>& masses() const { return m_network.mass; }
+
+    [[nodiscard]] State<Dim, Scalar> start(const Scenario<Dim, Scalar>& scenario) const {
+        return detail::start_network<Dim, Scalar>(m_network, scenario);
+    }
+
+    [[nodiscard]] Status advance(State<Dim, Scalar>& state, const Scenario<Dim, Scalar>& scenario, Scalar dt) {
+        require(dt > 0 && std::isfinite(dt), "dt", "a positive time step", dt);
+        const Status status = detail::advance_body<Dim, Scalar>(m_network, m_body, state, scenario, dt,
+                                                                [](Status s) { return usable(s); });
+        return usable(status) ? Status::converged : status;
+    }
+
+private:
+    SpringNetwork<Dim, Scalar> m_network;
+    ProjectiveBody<Dim, Scalar> m_body;
+};
+
+} // namespace springfit
