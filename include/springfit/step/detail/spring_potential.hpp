@@ -6,11 +6,7 @@
 
 namespace springfit::detail {
 
-/// The function that an implicit step or an equilibrium minimises over the coordinates of the free nodes:
-///
-///     w/2 |x - target|_M^2 + E(x) - f . (x - target) + d/2 sum_e c_e (n_e . (r_e(x) - r_e(old)))^2
-///
-/// with w = 1 / h^2 and d = 1 / h, n_e taken at the old positions; w = d = 0 leaves the equilibrium.
+/// The potential energy that an equilibrium minimises over the coordinates of the free nodes, E(x) - f . (x - start).
 ///
 /// Its Hessian is the exact one, which converges quadratically, where the gradient has become small. Far from the
 /// minimum, compressed springs make it indefinite and a Newton step along it poor: there it is the semidefinite one, at
@@ -21,7 +17,7 @@ public:
     using Scalar = ScalarType;
 
     SpringPotential(const SpringNetwork<Dim, Scalar>& network, const FreeNodes& free)
-        : m_matrix(spring_matrix(network, free)), m_damped((network.damping.array() > 0).any()) {}
+        : m_matrix(spring_matrix(network, free)) {}
 
     [[nodiscard]] const FreeNodes& free_nodes() const { return m_matrix.free_nodes(); }
     [[nodiscard]] const CliqueMatrix<Dim, Scalar>& matrix() const { return m_matrix; }
@@ -35,26 +31,8 @@ public:
         m_network = &network;
         m_external = &external;
         m_points = positions;
-        m_target = positions;
-        m_inertia = 0;
-        m_damping = 0;
+        m_start = positions;
         m_floor = floor;
-    }
-
-    /// Adds inertia about `target` and damping relative to `old` for a step of h.
-    void set_dynamics(const Points<Dim, Scalar>& target, const Points<Dim, Scalar>& old, Scalar h) {
-        m_target = target;
-        m_inertia = 1 / (h * h);
-        m_damping = m_damped ? 1 / h : Scalar(0);
-        if (m_damped) {
-            m_directions.resize(Dim, m_network->n_springs());
-            m_old_gap.resize(m_network->n_springs());
-            for (Index e = 0; e < m_network->n_springs(); ++e) {
-                const SpringVector<Dim, Scalar> spring(m_network->springs, e, old);
-                m_directions.col(e) = spring.inverse_length * spring.r;
-                m_old_gap(e) = spring.length;
-            }
-        }
     }
 
     /// The Hessian is exact where no entry of the gradient exceeds this, N.
@@ -88,12 +66,7 @@ public:
         free_nodes().template scatter<Dim, Scalar>(x, m_points);
         Scalar energy = elastic_energy<Dim, Scalar>(*m_network, m_points);
         for (int i : free_nodes().nodes()) {
-            const Vector<Dim, Scalar> away = m_points.col(i) - m_target.col(i);
-            energy += m_inertia / 2 * m_network->mass(i) * away.squaredNorm() - m_external->col(i).dot(away);
-        }
-        for (Index e = 0; m_damping > 0 && e < m_network->n_springs(); ++e) {
-            const Scalar change = gap(e) - m_old_gap(e);
-            energy += m_damping / 2 * m_network->damping(e) * change * change;
+            energy -= m_external->col(i).dot(m_points.col(i) - m_start.col(i));
         }
         return energy;
     }
@@ -102,15 +75,6 @@ public:
         free_nodes().template scatter<Dim, Scalar>(x, m_points);
         m_forces = *m_external;
         add_elastic_forces<Dim, Scalar>(*m_network, m_points, m_forces);
-        for (Index e = 0; m_damping > 0 && e < m_network->n_springs(); ++e) {
-            const Vector<Dim, Scalar> force =
-                m_damping * m_network->damping(e) * (gap(e) - m_old_gap(e)) * m_directions.col(e);
-            m_forces.col(m_network->springs(0, e)) += force;
-            m_forces.col(m_network->springs(1, e)) -= force;
-        }
-        for (int i : free_nodes().nodes()) {
-            m_forces.col(i) -= m_inertia * m_network->mass(i) * (m_points.col(i) - m_target.col(i));
-        }
         gradient = -free_nodes().template gather<Dim, Scalar>(m_forces);
         m_is_near = gradient.template lpNorm<Eigen::Infinity>() <= m_exact_below;
     }
@@ -123,13 +87,6 @@ public:
                                    m_is_near || !m_is_semidefinite ? Curvature::exact
                                                                    : Curvature::positive_semidefinite,
                                    m_matrix);
-        for (Index e = 0; m_damping > 0 && e < m_network->n_springs(); ++e) {
-            add_spring_block<Dim, Scalar>(
-                m_matrix, e, m_damping * m_network->damping(e) * m_directions.col(e) * m_directions.col(e).transpose());
-        }
-        for (Index f = 0; m_inertia > 0 && f < free_nodes().n_free(); ++f) {
-            m_matrix.add_diagonal(f, m_inertia * m_network->mass(free_nodes().nodes()[static_cast<std::size_t>(f)]));
-        }
         if (m_floor > 0) {
             const Scalar stiffest = m_matrix.matrix().diagonal().maxCoeff();
             for (Index f = 0; f < free_nodes().n_free(); ++f) {
@@ -154,17 +111,16 @@ public:
             terms += std::abs(m_network->volume_stiffness(c) * cell.dilation) * (size + m_network->rest_volume(c));
         }
         for (int i : free_nodes().nodes()) {
-            const Vector<Dim, Scalar> away = m_points.col(i) - m_target.col(i);
-            terms += m_inertia * m_network->mass(i) * away.squaredNorm() + std::abs(m_external->col(i).dot(away));
+            terms += std::abs(m_external->col(i).dot(m_points.col(i) - m_start.col(i)));
         }
         return 4 * std::numeric_limits<Scalar>::epsilon() * terms;
     }
 
     /// The gradient that rounding of the coordinates alone makes, N.
     [[nodiscard]] Scalar gradient_rounding(const Points<Dim, Scalar>& positions) const {
-        Values<Scalar> stiffness = m_inertia * m_network->mass;
+        Values<Scalar> stiffness = Values<Scalar>::Zero(m_network->n_nodes());
         for (Index e = 0; e < m_network->n_springs(); ++e) {
-            const Scalar value = m_network->stiffness(e) + m_damping * m_network->damping(e);
+            const Scalar value = m_network->stiffness(e);
             stiffness(m_network->springs(0, e)) += value;
             stiffness(m_network->springs(1, e)) += value;
         }
@@ -182,26 +138,17 @@ public:
     }
 
 private:
-    [[nodiscard]] Scalar gap(Index e) const {
-        return m_directions.col(e).dot(m_points.col(m_network->springs(1, e)) - m_points.col(m_network->springs(0, e)));
-    }
-
     CliqueMatrix<Dim, Scalar> m_matrix;
-    bool m_damped;
     const SpringNetwork<Dim, Scalar>* m_network = nullptr;
     const Points<Dim, Scalar>* m_external = nullptr;
-    Scalar m_inertia = 0;
-    Scalar m_damping = 0;
     Scalar m_floor = 0;
     Scalar m_exact_below = 0;
     Scalar m_reach = std::numeric_limits<Scalar>::infinity();
     bool m_is_near = false;
     bool m_is_semidefinite = true; ///< far from the minimum
     Points<Dim, Scalar> m_points; ///< all nodes; the free ones at the x last asked for
-    Points<Dim, Scalar> m_target;
+    Points<Dim, Scalar> m_start;
     Points<Dim, Scalar> m_forces;
-    Points<Dim, Scalar> m_directions;
-    Values<Scalar> m_old_gap;
 };
 
 } // namespace springfit::detail
