@@ -53,7 +53,7 @@ public:
 
     /// Nothing holds the network: a node has gone out of reach.
     [[nodiscard]] bool is_lost(const Values<Scalar>& x) {
-        return !((positions(x) - m_target).cwiseAbs().maxCoeff() <= m_reach);
+        return !((positions(x) - m_start).cwiseAbs().maxCoeff() <= m_reach);
     }
 
     /// Where all nodes are for the free coordinates x, m.
