@@ -2,6 +2,7 @@
 #pragma once
 
 #include <concepts>
+#include <cstddef>
 
 /// Vectors of a few numbers that one instruction works on, by the vector types that GCC and Clang share: the compiler
 /// makes AVX, SSE or scalar instructions of them, whatever it is told that the machine has.
@@ -14,6 +15,14 @@ struct SimdOf {
 
 template <std::floating_point Scalar, int Size>
 using Simd = typename SimdOf<Scalar, Size>::type;
+
+/// Asks for an object in memory before it is needed; it may lie beyond the end of its array.
+template <class Object>
+void prefetch(const Object* object) {
+    for (std::size_t line = 0; line < sizeof(Object); line += 64) {
+        __builtin_prefetch(reinterpret_cast<const char*>(object) + line);
+    }
+}
 
 /// Stores vectors of four one after another in one instruction: a load of all right after would wait for two.
 template <int Size, class Four, std::floating_point Scalar>

@@ -20,6 +20,7 @@ class PackedSprings {
 public:
     static constexpr int lanes = 32 / static_cast<int>(sizeof(Scalar)); ///< springs per block
     static constexpr int blocks_per_chunk = 64 / lanes;
+    static constexpr std::ptrdiff_t blocks_ahead = 128 / lanes; ///< how far ahead of its use a block is asked for
     static constexpr Index nodes_per_domain = 16384;
 
     /// Values that stand side by side for as many springs; springs that fill up a block have none and two equal ends.

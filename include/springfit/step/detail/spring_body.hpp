@@ -180,6 +180,7 @@ void SpringBody<Dim, ScalarType>::add_spring_forces(const std::vector<Block>& bl
         alignas(64) Scalar factors[Packed::blocks_per_chunk][lanes];
         for (std::size_t b = 0; b < n; ++b) {
             const Block& block = chunk[b];
+            detail::prefetch(chunk + b + Packed::blocks_ahead);
             typename Lanes::Force squares[lanes / 4], rates[lanes / 4];
             for (int group = 0; group < lanes / 4; ++group) {
                 typename Lanes::Record differences[4];
