@@ -227,7 +227,8 @@ void add() {
             for (int factor : {30, 100}) {
                 const auto add_implicit = [&](const std::string& what, auto function) {
                     const auto name = bench::name<Dim, Scalar>(what + "_" + std::to_string(factor), springs);
-                    benchmark::RegisterBenchmark(name.c_str(), function, springs, factor)->Unit(benchmark::kMillisecond);
+                    benchmark::RegisterBenchmark(name.c_str(), function, springs, factor)
+                        ->Unit(benchmark::kMillisecond);
                 };
                 if (springs >= 10000 && (springs <= 100000 || factor == 30)) {
                     add_implicit("plain_implicit_step", plain_implicit_step<Dim, Scalar>);
