@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#define EIGEN_RUNTIME_NO_MALLOC // Eigen then aborts on an allocation where it is told so
+#include "allocations.hpp"
 
 #include "tolerance.hpp"
-
-#include <cstdlib>
-#include <new>
 
 #include <springfit/motion/record.hpp>
 #include <springfit/step/equilibrium.hpp>
@@ -18,24 +15,6 @@ using namespace springfit;
 
 static_assert(Stepper<ProjectiveEuler<2, double>>);
 static_assert(Stepper<ProjectiveEuler<3, float>>);
-
-namespace {
-long n_allocations = 0;
-}
-
-[[gnu::noinline]] void* operator new(std::size_t size) {
-    ++n_allocations;
-    if (void* memory = std::malloc(size)) {
-        return memory;
-    }
-    throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-    std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-    std::free(memory);
-}
 
 namespace {
 
@@ -146,11 +125,11 @@ TEST_CASE_TEMPLATE("domains change neither the projective step nor its bits, and
         body.set_clamped({5});
         body.write(thrown.initial_positions, thrown.initial_velocities);
         (void)body.step(h);
-        const long before = n_allocations;
+        const long before = test::n_allocations;
         Eigen::internal::set_is_malloc_allowed(false);
         (void)body.step(h);
         Eigen::internal::set_is_malloc_allowed(true);
-        CHECK((run == 1 || n_allocations == before)); // an execution of one's own may
+        CHECK((run == 1 || test::n_allocations == before)); // an execution of one's own may
         body.read(x[run], v[run]);
     }
     CHECK(x[0] == x[1]);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "allocations.hpp"
+
 #include "tolerance.hpp"
 
 #include <springfit/step/spring_batch.hpp>
@@ -87,6 +89,19 @@ TEST_CASE_TEMPLATE("a body's bits depend neither on the threads nor on its neigh
     few.read(2, y, w);
     CHECK(x == y);
     CHECK(v == w);
+}
+
+TEST_CASE_TEMPLATE("a step of a batch allocates nothing", T, SPRINGFIT_TEST_SPACES) {
+    constexpr int dim = T::dimension;
+    using Scalar = typename T::Scalar;
+    const auto network = test::random_network_with_cells<dim, Scalar>(Scalar(0.01), -10, 100);
+    auto batch = moved<dim, Scalar>(network, 20, Scalar(0.001), 0);
+    const long before = test::n_allocations;
+    Eigen::internal::set_is_malloc_allowed(false);
+    batch.step(Scalar(0.001));
+    batch.step(Scalar(0.001));
+    Eigen::internal::set_is_malloc_allowed(true);
+    CHECK(test::n_allocations == before);
 }
 
 TEST_CASE("wrong sizes and numbers of a batch are refused") {

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#define EIGEN_RUNTIME_NO_MALLOC // Eigen then aborts on an allocation where it is told so
+#include "allocations.hpp"
 
 #include "tolerance.hpp"
-
-#include <cstdlib>
-#include <new>
 
 #include <springfit/motion/record.hpp>
 #include <springfit/step/symplectic_euler.hpp>
@@ -12,24 +9,6 @@
 #include "example.hpp"
 
 using namespace springfit;
-
-namespace {
-long n_allocations = 0;
-}
-
-[[gnu::noinline]] void* operator new(std::size_t size) {
-    ++n_allocations;
-    if (void* memory = std::malloc(size)) {
-        return memory;
-    }
-    throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-    std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-    std::free(memory);
-}
 
 static_assert(Stepper<SymplecticEuler<2, float>>);
 static_assert(Stepper<SymplecticEuler<3, double>>);
@@ -259,12 +238,12 @@ TEST_CASE_TEMPLATE("the explicit step allocates nothing", T, SPRINGFIT_TEST_SPAC
     const auto network = test::random_network_with_cells<dim, Scalar>(Scalar(0.01), -10, 100);
     SpringBody<dim, Scalar> body(network);
     body.set_external_forces(Points<dim, Scalar>::Ones(dim, network.n_nodes()));
-    const long before = n_allocations;
+    const long before = test::n_allocations;
     Eigen::internal::set_is_malloc_allowed(false);
     for (int s = 0; s < 10; ++s) {
         body.step(Scalar(0.001));
     }
     Eigen::internal::set_is_malloc_allowed(true);
-    CHECK(n_allocations == before);
+    CHECK(test::n_allocations == before);
     CHECK(body.position(0) != network.rest_positions.col(0));
 }

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Counts allocations. Included before any other header, by one file of a program, since it replaces operator new.
+
+#define EIGEN_RUNTIME_NO_MALLOC // Eigen then aborts on an allocation where it is told so
+
+#include <cstdlib>
+#include <new>
+
+namespace springfit::test {
+inline long n_allocations = 0;
+}
+
+[[gnu::noinline]] void* operator new(std::size_t size) {
+    ++springfit::test::n_allocations;
+    if (void* memory = std::malloc(size)) {
+        return memory;
+    }
+    throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
+    std::free(memory);
+}
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
+    std::free(memory);
+}
