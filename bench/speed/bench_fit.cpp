@@ -2,6 +2,8 @@
 // Nanoseconds per spring of the acceleration fit over 200 frames: assembly, one pass, a sweep, and the exact solution,
 // each beside a plain hand-written baseline, the exact one also beside Ipopt. One thread.
 
+#include <sys/resource.h>
+
 #include <map>
 #include <memory>
 
@@ -150,6 +152,38 @@ void plain_exact(benchmark::State& state, Index springs) {
     state.counters["kkt"] = residual;
 }
 
+/// Assembly and exact fit of 200 rich frames that are made, taken in and forgotten one by one. Making them is not
+/// timed.
+template <int Dim, class Scalar>
+void streamed_fit(benchmark::State& state, Index springs) {
+    using Frame = Points<Dim, Scalar>;
+    const auto network = bench::network<Dim, Scalar>(springs);
+    auto start = network;
+    start.stiffness.setConstant(Scalar(bench::start_stiffness));
+    FitReport report;
+    for (auto _ : state) {
+        bench::Waves<Dim, Scalar> waves(network, bench::Excitation::rich);
+        AccelerationObjective<Dim, Scalar> objective(start);
+        for (int t = 0; t < waves.n_frames; ++t) {
+            state.PauseTiming();
+            waves.next(t, [&](const Frame& x, const Frame& v, const Frame& a, const Frame& f) {
+                state.ResumeTiming();
+                objective.add_frame(x, v, a, f, {});
+                state.PauseTiming();
+            });
+            state.ResumeTiming();
+        }
+        report = springfit::exact(std::move(objective).problem());
+    }
+    bench::count(state, network.n_springs());
+    state.counters["kkt"] = report.kkt_residual;
+    state.counters["products"] = report.products;
+    state.counters["exact_seconds"] = report.seconds;
+    rusage used{};
+    getrusage(RUSAGE_SELF, &used);
+    state.counters["peak_MiB"] = static_cast<double>(used.ru_maxrss) / 1024; // of the process so far
+}
+
 template <int Dim, class Scalar>
 void add() {
     for (Index springs : {1000, 10000, 100000}) {
@@ -185,5 +219,11 @@ int main(int argc, char** argv) {
     add<2, double>();
     add<3, float>();
     add<3, double>();
+    for (Index springs : {10000, 100000, 1000000}) {
+        benchmark::RegisterBenchmark(bench::name<3, double>("streamed_fit", springs).c_str(), streamed_fit<3, double>,
+                                     springs)
+            ->Unit(benchmark::kMillisecond)
+            ->Iterations(1);
+    }
     return bench::run(argc, argv);
 }

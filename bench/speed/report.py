@@ -35,6 +35,7 @@ NAMES = {
     "plain_exact": "plain projected Gauss-Seidel",
     "exact": "springfit, exact",
     "exact_poor": "springfit, exact, poorly excited",
+    "streamed_fit": "springfit, assembly and exact, frames streamed",
     "ipopt": "Ipopt",
     "ipopt_poor": "Ipopt, poorly excited",
     "tao_bnls": "PETSc/TAO, bnls",
@@ -160,7 +161,8 @@ def ns_cell(row):
 
 def ms_cell(row):
     text = digits(row.ns * row.counters.get("springs", row.springs) * 1e-6)
-    return text + (f", {row.counters['kkt']:.0e}" if "kkt" in row.counters else "")
+    text += f", {row.counters['kkt']:.0e}" if "kkt" in row.counters else ""
+    return text + (f", {row.counters['peak_MiB']:.0f} MiB" if "peak_MiB" in row.counters else "")
 
 
 def cache_sizes(context):
@@ -274,7 +276,8 @@ def page_of_fits(runs):
     if not page:
         return ""
     return (
-        "## Acceleration fit\n\nMilliseconds; where a solver was to reach an optimum, the KKT residual that it reached; in "
+        "## Acceleration fit\n\nMilliseconds; where a solver was to reach an optimum, the KKT residual that it reached, and for streamed "
+        "frames the peak memory of the process; in "
         "brackets the time over the plain baseline's in the same run (`plain_<name>`, for peers projected "
         "Gauss-Seidel). Peers get the assembled quadratic in scaled variables, start at the prior, and are to reach a "
         "residual of 1e-9 with about an eighth of the bounds active.\n\n" + page

@@ -299,13 +299,14 @@ TEST_CASE("sets that go round in circles are settled by a pull to where they are
         const Index n = 3 + trial % 8;
         const DenseMatrix<double> a = random.points<2, double>(n, 1).transpose();
         DenseMatrix<double> h = a * a.transpose();
-        h.diagonal().array() += trial % 3 == 0 ? 1e-4 : 1e-2;
+        h.diagonal().array() += trial % 3 == 0 ? 1e-6 : 1e-3;
         const Values<double> g = random.points<3, double>(n, 2).row(0).transpose();
         const Values<double> start = Values<double>::Constant(n, random(0, 0.5));
         FitProblem problem = box_problem(dense(h, g, 1e3), Values<double>::Zero(n), Values<double>::Ones(n), start);
         problem.upper.setConstant(trial % 2 == 0 ? 1 : std::numeric_limits<double>::infinity());
         const FitReport report = exact(problem);
-        CHECK(report.status == Status::converged);
+        CHECK((report.status == Status::converged || report.status == Status::stalled));
+        CHECK(report.kkt_residual <= 1e-9); // rounding times a condition of 1e7
         check_report(problem, report);
         settled += report.iterations > 8 ? 1 : 0;
         Values<double> x = start;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <springfit/step/detail/incremental_potential.hpp>
+#include <springfit/step/detail/renumbered_cells.hpp>
 #include <springfit/step/detail/spring_operator.hpp>
 
 namespace springfit {
@@ -34,7 +35,7 @@ struct ImplicitBodyOptions {
 /// Nodes are numbered as in the network outside and by locality inside. Several threads, by the `Execution`, give the
 /// same bits as one. A step allocates nothing.
 template <int Dim, std::floating_point ScalarType, std::floating_point LinearScalar = float>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 class ImplicitBody : public detail::IncrementalPotential<Dim, ScalarType> {
 public:
     using Scalar = ScalarType;

@@ -31,7 +31,7 @@ struct ProjectiveBodyOptions {
 /// Nodes are numbered as in the network outside. The same bits on any number of threads; the triangular solves use
 /// one. A step allocates nothing unless it factorises.
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 class ProjectiveBody : public detail::IncrementalPotential<Dim, ScalarType> {
 public:
     using Scalar = ScalarType;

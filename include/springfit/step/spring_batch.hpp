@@ -4,6 +4,7 @@
 #include <springfit/core/execution.hpp>
 #include <springfit/network/locality.hpp>
 #include <springfit/network/volume.hpp>
+#include <springfit/step/detail/renumbered_cells.hpp>
 
 namespace springfit {
 

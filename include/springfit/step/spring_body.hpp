@@ -4,6 +4,7 @@
 #include <springfit/network/volume.hpp>
 #include <springfit/step/detail/node_lanes.hpp>
 #include <springfit/step/detail/packed_springs.hpp>
+#include <springfit/step/detail/renumbered_cells.hpp>
 
 namespace springfit {
 

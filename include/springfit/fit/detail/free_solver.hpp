@@ -98,21 +98,21 @@ private:
     enum class Outcome { solved, slow, stopped };
     enum class Preconditioner { diagonal, factor };
     static constexpr Index unknowns_per_chunk = 2048;
+    static constexpr Index most_factorised = 250000; ///< unknowns; in solids a factor has 1000 entries for each there
     static constexpr int patience = 300;    ///< iterations in all before a factorisation is thought of: its analysis
                                             ///< takes about as long
     static constexpr double n_expected = 5; ///< factorisations until the end, once they begin
-    static constexpr double product_slowness = 3; ///< time of an operation in a product with H, that in a front being 1
-    static constexpr double solve_slowness = 8;   ///< the same in triangular solves
+    static constexpr double product_slowness =
+        0.25; ///< time of an operation in a product with H, that in a factorisation being 1
+    static constexpr double solve_slowness = 1.5; ///< the same in triangular solves
 
-    [[nodiscard]] double factor_cost() const {
-        return m_factor->factor().flops() + 50 * m_factor->factor().n_entries();
-    }
-    [[nodiscard]] double solve_cost() const { return solve_slowness * 4 * m_factor->factor().n_entries(); }
+    [[nodiscard]] double factor_cost() const { return m_factor->flops(); }
+    [[nodiscard]] double solve_cost() const { return solve_slowness * 4 * m_factor->n_entries(); }
 
     /// Whether a factor is expected to be quicker, after `iterations` that made the gradient `reduced` times smaller.
     bool factor_is_quicker(int iterations, double reduced, double largest_now) {
         const int spent = m_n_products - m_before;
-        if (spent < patience || iterations % 50 != 0) {
+        if (spent < patience || iterations % 50 != 0 || m_curvature.size() > most_factorised) {
             return false;
         }
         if (!m_factor) {

@@ -6,7 +6,8 @@
 namespace springfit {
 
 template <int Dim, std::floating_point ScalarType, std::floating_point LinearScalar>
-requires SpatialDimension<Dim> ImplicitBody<Dim, ScalarType, LinearScalar>::ImplicitBody(
+    requires SpatialDimension<Dim>
+ImplicitBody<Dim, ScalarType, LinearScalar>::ImplicitBody(
     const SpringNetwork<Dim, Scalar>& network, const ImplicitBodyOptions<Scalar>& options, const Execution& execution)
     : Base(network, execution), m_options(options), m_operator(this->m_springs) {
     require(options.max_iterations > 0, "max_iterations", "at least one", options.max_iterations);
@@ -14,12 +15,7 @@ requires SpatialDimension<Dim> ImplicitBody<Dim, ScalarType, LinearScalar>::Impl
             options.linear_tolerance);
     require(options.max_linear_iterations > 0, "max_linear_iterations", "at least one", options.max_linear_iterations);
     require(options.tolerance > 0, "tolerance", "a positive tolerance", options.tolerance);
-    m_cells.cells = network.cells;
-    for (int& node : m_cells.cells.reshaped()) {
-        node = this->m_springs.number(node);
-    }
-    m_cells.rest_volume = network.rest_volume;
-    m_cells.volume_stiffness = network.volume_stiffness;
+    m_cells = detail::renumbered_cells(network, [&](int node) { return this->m_springs.number(node); });
     for (Index c = 0; c < network.n_cells(); ++c) {
         const detail::VolumeCell<Dim, Scalar> cell(network, c, network.rest_positions);
         const auto slopes = cell.gradient().colwise().norm().eval();
@@ -31,7 +27,7 @@ requires SpatialDimension<Dim> ImplicitBody<Dim, ScalarType, LinearScalar>::Impl
 }
 
 template <int Dim, std::floating_point ScalarType, std::floating_point LinearScalar>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 void ImplicitBody<Dim, ScalarType, LinearScalar>::set_inertia(Scalar h) {
     for (std::size_t i = 0; i < this->m_mass.size(); ++i) {
         m_operator.inertia()[i] = static_cast<LinearScalar>(this->m_mass[i] / (h * h));
@@ -39,7 +35,8 @@ void ImplicitBody<Dim, ScalarType, LinearScalar>::set_inertia(Scalar h) {
 }
 
 template <int Dim, std::floating_point ScalarType, std::floating_point LinearScalar>
-requires SpatialDimension<Dim> ImplicitStepReport<ScalarType>
+    requires SpatialDimension<Dim>
+ImplicitStepReport<ScalarType>
 ImplicitBody<Dim, ScalarType, LinearScalar>::step(Scalar h) {
     require(h > 0 && std::isfinite(h), "h", "a positive time step", h);
     ImplicitStepReport<Scalar> report;
@@ -51,7 +48,7 @@ ImplicitBody<Dim, ScalarType, LinearScalar>::step(Scalar h) {
 }
 
 template <int Dim, std::floating_point ScalarType, std::floating_point LinearScalar>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 void ImplicitBody<Dim, ScalarType, LinearScalar>::iterate(Scalar h, ImplicitStepReport<Scalar>& report) {
     constexpr Scalar tightest = 16 * static_cast<Scalar>(std::numeric_limits<LinearScalar>::epsilon());
     const Scalar per_position = this->rounding(h);
@@ -92,7 +89,7 @@ void ImplicitBody<Dim, ScalarType, LinearScalar>::iterate(Scalar h, ImplicitStep
 /// Linearises where the last direction leads, shortened until it no longer leads uphill about as steeply as it began
 /// downhill, or until the gradient has fallen; false, with the positions where it began, where it never does.
 template <int Dim, std::floating_point ScalarType, std::floating_point LinearScalar>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 bool ImplicitBody<Dim, ScalarType, LinearScalar>::search(Scalar h, bool exact, double decrease, Found& found) {
     const Found before = found;
     for (int attempt = 0; attempt < 16; ++attempt) {
@@ -112,7 +109,7 @@ bool ImplicitBody<Dim, ScalarType, LinearScalar>::search(Scalar h, bool exact, d
 
 /// Forces, Hessian and balance at the positions.
 template <int Dim, std::floating_point ScalarType, std::floating_point LinearScalar>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 auto ImplicitBody<Dim, ScalarType, LinearScalar>::linearise(Scalar h, bool exact) -> Found {
     this->for_domains([&](std::size_t d, const auto& domain) {
         for (auto i = static_cast<std::size_t>(domain.begin); i < static_cast<std::size_t>(domain.end); ++i) {
@@ -138,7 +135,7 @@ auto ImplicitBody<Dim, ScalarType, LinearScalar>::linearise(Scalar h, bool exact
 /// The share of springs in forces and Hessian: c_1 = k (1 - l/L), u = sqrt(k - c_1 + c/h) r/L. The damping's direction
 /// is that of r, not of r_n, in the Hessian.
 template <int Dim, std::floating_point ScalarType, std::floating_point LinearScalar>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 template <bool Damped, bool OnBothEnds>
 void ImplicitBody<Dim, ScalarType, LinearScalar>::add_springs(const std::vector<Block>& blocks,
                                                               typename Operator::Part& part, Scalar h, bool exact) {
@@ -169,7 +166,7 @@ void ImplicitBody<Dim, ScalarType, LinearScalar>::add_springs(const std::vector<
 }
 
 template <int Dim, std::floating_point ScalarType, std::floating_point LinearScalar>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 void ImplicitBody<Dim, ScalarType, LinearScalar>::add_cells(const typename Packed::Domain& domain,
                                                             typename Operator::Domain& target, bool exact) {
     for (std::size_t at = 0; at < domain.cells.size(); ++at) {
@@ -204,7 +201,8 @@ void ImplicitBody<Dim, ScalarType, LinearScalar>::add_cells(const typename Packe
 }
 
 template <int Dim, std::floating_point ScalarType, std::floating_point LinearScalar>
-requires SpatialDimension<Dim> Points<Dim, ScalarType>
+    requires SpatialDimension<Dim>
+Points<Dim, ScalarType>
 ImplicitBody<Dim, ScalarType, LinearScalar>::apply_hessian(const Points<Dim, Scalar>& displacements, Scalar h,
                                                            bool exact) {
     require(displacements.cols() == this->n_nodes(), "displacements", text(this->n_nodes(), " nodes"),

@@ -25,7 +25,7 @@ namespace detail {
 ///
 /// n_e lagged: the pass over the springs, the gradient, and a step's start and end.
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 class IncrementalPotential : public MovingNodes<Dim, ScalarType> {
 public:
     using Scalar = ScalarType;
@@ -150,7 +150,7 @@ protected:
 };
 
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 template <bool Damped, class Visit>
 void IncrementalPotential<Dim, ScalarType>::for_springs(const std::vector<Block>& blocks, Scalar h, Scalar lowest,
                                                         const Visit& visit) const {
@@ -212,7 +212,7 @@ void IncrementalPotential<Dim, ScalarType>::for_springs(const std::vector<Block>
 }
 
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 template <std::floating_point Real>
 void IncrementalPotential<Dim, ScalarType>::balance(const typename Packed::Domain& domain, Scalar h,
                                                     std::vector<Four<Real>>& target,

@@ -28,7 +28,7 @@ void dot_products(const Four<Scalar>* a, const Four<Scalar>* b, Scalar* target) 
 
 /// What the bodies of the implicit steps share: the nodes, by locality inside and as in the network outside.
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 class MovingNodes {
 public:
     static constexpr int dimension = Dim;

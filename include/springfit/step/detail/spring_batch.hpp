@@ -9,7 +9,8 @@
 namespace springfit {
 
 template <int Dim, std::floating_point ScalarType>
-    requires SpatialDimension<Dim> SpringBatch<Dim, ScalarType>::SpringBatch(const SpringNetwork<Dim, Scalar>& network,
+    requires SpatialDimension<Dim>
+SpringBatch<Dim, ScalarType>::SpringBatch(const SpringNetwork<Dim, Scalar>& network,
                                                                          Index n_bodies, const Execution& execution)
     : m_n_bodies(n_bodies), m_execution(execution),
       m_order((validate(network), locality_order(network.n_nodes(), network.springs))), m_number(m_order.size()) {
@@ -34,12 +35,7 @@ template <int Dim, std::floating_point ScalarType>
         m_springs.insert(m_springs.end(), own.begin(), own.end());
         m_first_spring.push_back(static_cast<int>(m_springs.size()));
     }
-    m_cells.cells = network.cells;
-    for (int& node : m_cells.cells.reshaped()) {
-        node = number(node);
-    }
-    m_cells.rest_volume = network.rest_volume;
-    m_cells.volume_stiffness = network.volume_stiffness;
+    m_cells = detail::renumbered_cells(network, number);
     const Vectors zero = Vectors::Zero();
     m_nodes.assign(static_cast<std::size_t>(Execution::n_chunks(n_bodies, lanes)) * n, {zero, zero, zero, zero});
     for (std::size_t i = 0; i < m_nodes.size(); ++i) {

@@ -8,7 +8,8 @@
 namespace springfit {
 
 template <int Dim, std::floating_point ScalarType>
-    requires SpatialDimension<Dim> SpringBody<Dim, ScalarType>::SpringBody(const SpringNetwork<Dim, Scalar>& network,
+    requires SpatialDimension<Dim>
+SpringBody<Dim, ScalarType>::SpringBody(const SpringNetwork<Dim, Scalar>& network,
                                                                        const Execution& execution)
     : m_springs((validate(network), network)), m_execution(execution) {
     const auto n = static_cast<std::size_t>(network.n_nodes());
@@ -20,17 +21,13 @@ template <int Dim, std::floating_point ScalarType>
         m_inverse_mass[place] = 1 / network.mass(m_springs.order()[place]);
     }
     set_clamped({});
-    m_cells.cells = network.cells;
-    for (int& node : m_cells.cells.reshaped()) {
-        node = m_springs.number(node);
-    }
-    m_cells.rest_volume = network.rest_volume;
-    m_cells.volume_stiffness = network.volume_stiffness;
+    m_cells = detail::renumbered_cells(network, [&](int node) { return m_springs.number(node); });
     write(network.rest_positions, Points<Dim, Scalar>::Zero(Dim, network.n_nodes()));
 }
 
 template <int Dim, std::floating_point ScalarType>
-    requires SpatialDimension<Dim> std::size_t SpringBody<Dim, ScalarType>::bytes()
+    requires SpatialDimension<Dim>
+std::size_t SpringBody<Dim, ScalarType>::bytes()
 const {
     const std::size_t per_node = sizeof(Record) + 2 * sizeof(Force) + sizeof(Scalar) + 2 * sizeof(int);
     std::size_t total = m_nodes.size() * per_node;
@@ -41,7 +38,8 @@ const {
 }
 
 template <int Dim, std::floating_point ScalarType>
-    requires SpatialDimension<Dim> Vector<Dim, ScalarType> SpringBody<Dim, ScalarType>::position(int node)
+    requires SpatialDimension<Dim>
+Vector<Dim, ScalarType> SpringBody<Dim, ScalarType>::position(int node)
 const {
     const Record& record = m_nodes[static_cast<std::size_t>(m_springs.number(node))];
     Vector<Dim, Scalar> result;
@@ -52,7 +50,8 @@ const {
 }
 
 template <int Dim, std::floating_point ScalarType>
-    requires SpatialDimension<Dim> Vector<Dim, ScalarType> SpringBody<Dim, ScalarType>::velocity(int node)
+    requires SpatialDimension<Dim>
+Vector<Dim, ScalarType> SpringBody<Dim, ScalarType>::velocity(int node)
 const {
     const Record& record = m_nodes[static_cast<std::size_t>(m_springs.number(node))];
     Vector<Dim, Scalar> result;
