@@ -16,6 +16,8 @@ public:
 
     /// Keeps a copy of the network.
     explicit NetworkStatics(SpringNetwork<Dim, Scalar> network) : m_network(std::move(network)) { validate(m_network); }
+    NetworkStatics(const NetworkStatics&) = delete; // m_springs refers to m_network
+    NetworkStatics& operator=(const NetworkStatics&) = delete;
 
     [[nodiscard]] const Points<Dim, Scalar>& rest_positions() const { return m_network.rest_positions; }
     [[nodiscard]] const Values<Scalar>& masses() const { return m_network.mass; }
