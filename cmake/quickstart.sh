@@ -9,7 +9,7 @@ set -eu
 cd "$(dirname "$0")/.."
 
 build_packages="g++ cmake ninja-build pkg-config libeigen3-dev libtbb-dev libcgal-dev coinor-libipopt-dev
-                nlohmann-json3-dev libhdf5-dev libcli11-dev"
+                nlohmann-json3-dev libhdf5-dev libcli11-dev libsuitesparse-dev libopenblas0-serial"
 bench_packages="libbenchmark-dev libbullet-dev libmujoco-dev libpetsc-real-dev python3-scipy"
 test_packages="doctest-dev libpagmo-dev python3 python3-h5py"
 
@@ -73,7 +73,7 @@ performance)
     cmake --preset bench
     cmake --build build-bench --target springfit_speed
     programs=""
-    for program in machine step peers_step peers_step_double fit peers_fit; do
+    for program in machine step peers_step peers_step_double fit solve peers_fit; do
         [ ! -x "build-bench/bin/bench_$program" ] || programs="$programs build-bench/bin/bench_$program"
     done
     python3 bench/speed/report.py $programs --out docs

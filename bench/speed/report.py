@@ -36,6 +36,11 @@ NAMES = {
     "exact": "springfit, exact",
     "exact_poor": "springfit, exact, poorly excited",
     "streamed_fit": "springfit, assembly and exact, frames streamed",
+    "supernodal_factor": "factor of the stiffness, CHOLMOD",
+    "supernodal_solves": "solves for 16 cases, with CHOLMOD's factor",
+    "simplicial_factor": "factor of the stiffness, Eigen",
+    "simplicial_solves": "solves for 16 cases, with Eigen's factor",
+    "match": "springfit, three iterations of matching 16 static cases",
     "ipopt": "Ipopt",
     "ipopt_poor": "Ipopt, poorly excited",
     "tao_bnls": "PETSc/TAO, bnls",
@@ -257,7 +262,7 @@ def page_of_steps(runs):
 def page_of_fits(runs):
     page = ""
     for run_ in runs:
-        fits = [row for row in run_.rows if not is_step(row)]
+        fits = [row for row in run_.rows if not is_step(row) and run_.program != "bench_solve"]
         base = lambda row: ["plain_" + row.what, "plain_exact"] if run_.program == "bench_peers_fit" else ["plain_" + row.what]
         for dim in sorted({row.dim for row in fits}):
             page += f"### {'In the plane' if dim == 2 else 'In space'}, `{run_.program}`\n\n"
@@ -281,6 +286,21 @@ def page_of_fits(runs):
         "brackets the time over the plain baseline's in the same run (`plain_<name>`, for peers projected "
         "Gauss-Seidel). Peers get the assembled quadratic in scaled variables, start at the prior, and are to reach a "
         "residual of 1e-9 with about an eighth of the bounds active.\n\n" + page
+    )
+
+
+def page_of_matching(runs):
+    page = ""
+    for run_ in runs:
+        if run_.program == "bench_solve":
+            base = lambda row: [row.what.replace("supernodal", "simplicial")]
+            page += table(run_.rows, with_ratio(run_, base, ms_cell))
+    if not page:
+        return ""
+    return (
+        "## Matching of motion\n\nMilliseconds, one thread, and in brackets the time over that of Eigen's in the same run: "
+        "sparse factors of a solid network's stiffness, the solves that all cases of a block share, and iterations of "
+        "Gauss-Newton, with the factor that is linked.\n\n" + page + "\n"
     )
 
 
@@ -390,6 +410,7 @@ def main():
         + steps
         + write_figures(runs, options.out)
         + page_of_fits(runs)
+        + page_of_matching(runs)
         + page_of_roofline(runs, machine)
     )
     with open(os.path.join(options.out, "performance.md"), "w", encoding="utf-8") as file:

@@ -7,6 +7,7 @@
 #include <Eigen/SparseCholesky>
 
 #include <springfit/solve/conjugate_gradients.hpp>
+#include <springfit/solve/sparse_cholesky.hpp>
 
 namespace springfit {
 
@@ -68,63 +69,74 @@ public:
 
     /// Factorises anew. The shift that made the matrix positive definite is `shift()`, 0 where none was needed.
     [[nodiscard]] bool factorise(const SymmetricMatrix<Scalar>& a) {
-        SparseMatrix<Scalar> extended;
+        SparseMatrix<double> matrix = a.lower().template cast<double>();
         if (a.n_terms() > 0) {
-            extend(a, extended);
-        }
-        const SparseMatrix<Scalar>& matrix = a.n_terms() > 0 ? extended : a.lower();
-        if (!m_analysed) {
-            m_factor.analyzePattern(matrix);
-            m_analysed = true;
+            extend(a, matrix);
         }
         m_shift = 0;
         m_factorised = false;
         m_size = a.size();
-        for (int attempt = 0; attempt < 10; ++attempt) {
+        for (int attempt = 0; attempt < 10 && !m_factorised; ++attempt) {
             if (attempt == 0) {
-                m_factor.factorize(matrix);
+                m_factorised = try_factorising(a, matrix);
             } else {
                 m_shift = (m_shift > 0) ? 100 * m_shift : std::sqrt(std::numeric_limits<Scalar>::epsilon());
-                SparseMatrix<Scalar> shifted = matrix;
+                SparseMatrix<double> shifted = matrix;
                 for (Index i = 0; i < m_size; ++i) {
-                    Scalar& diagonal = shifted.valuePtr()[shifted.outerIndexPtr()[i]];
-                    diagonal += m_shift * std::max(std::abs(diagonal), std::numeric_limits<Scalar>::min());
+                    double& diagonal = shifted.valuePtr()[shifted.outerIndexPtr()[i]];
+                    diagonal += m_shift * std::max<double>(std::abs(diagonal), std::numeric_limits<Scalar>::min());
                 }
-                m_factor.factorize(shifted);
-            }
-            if (m_factor.info() == Eigen::Success && pivots_agree(a)) {
-                m_factorised = true;
-                ++m_n_factorisations;
-                return true;
+                m_factorised = try_factorising(a, shifted);
             }
         }
-        return false;
+        m_n_factorisations += m_factorised ? 1 : 0;
+        return m_factorised;
     }
 
     /// Applies the present factorisation.
     [[nodiscard]] Values<Scalar> apply_factor(const Values<Scalar>& b) const {
-        if (m_factor.rows() == b.size()) {
-            return m_factor.solve(b);
+        Values<double> x;
+        if (!m_has_terms) {
+            m_factor.solve(b.template cast<double>(), x);
+            return x.template cast<Scalar>();
         }
-        Values<Scalar> extended = Values<Scalar>::Zero(m_factor.rows());
-        extended.head(b.size()) = b;
-        return m_factor.solve(extended).eval().head(b.size());
+        Values<double> extended = Values<double>::Zero(m_extended_factor.rows());
+        extended.head(b.size()) = b.template cast<double>();
+        x = m_extended_factor.solve(extended);
+        return x.head(b.size()).template cast<Scalar>();
     }
 
     [[nodiscard]] Scalar shift() const { return m_shift; }
     [[nodiscard]] int n_factorisations() const { return m_n_factorisations; }
 
 private:
-    /// Lower triangle of the matrix with one more unknown per rank-one term. Its pattern depends on that of `a` alone.
-    static void extend(const SymmetricMatrix<Scalar>& a, SparseMatrix<Scalar>& extended) {
+    [[nodiscard]] bool try_factorising(const SymmetricMatrix<Scalar>& a, const SparseMatrix<double>& matrix) {
+        const bool new_pattern = !m_analysed || m_has_terms != (a.n_terms() > 0);
+        m_has_terms = a.n_terms() > 0;
+        m_analysed = true;
+        if (!m_has_terms) {
+            if (new_pattern) {
+                m_factor.analyse(matrix);
+            }
+            return m_factor.factorise(matrix);
+        }
+        if (new_pattern) {
+            m_extended_factor.analyzePattern(matrix);
+        }
+        m_extended_factor.factorize(matrix);
+        return m_extended_factor.info() == Eigen::Success && pivots_agree(a);
+    }
+
+    /// Extends the lower triangle by one more unknown per rank-one term. The pattern depends on that of `a` alone.
+    static void extend(const SymmetricMatrix<Scalar>& a, SparseMatrix<double>& matrix) {
         const Index n = a.size();
         const Index terms = a.n_terms();
         const SparseMatrix<Scalar> rows = a.columns().transpose();
-        extended.resize(n + terms, n + terms);
-        extended.reserve(a.lower().nonZeros() + rows.nonZeros() + terms);
+        SparseMatrix<double> extended(n + terms, n + terms);
+        extended.reserve(matrix.nonZeros() + rows.nonZeros() + terms);
         for (Index i = 0; i < n; ++i) {
             extended.startVec(i);
-            for (typename SparseMatrix<Scalar>::InnerIterator entry(a.lower(), i); entry; ++entry) {
+            for (SparseMatrix<double>::InnerIterator entry(matrix, i); entry; ++entry) {
                 extended.insertBack(entry.row(), i) = entry.value();
             }
             for (typename SparseMatrix<Scalar>::InnerIterator entry(rows, i); entry; ++entry) {
@@ -133,14 +145,15 @@ private:
         }
         for (Index p = 0; p < terms; ++p) {
             extended.startVec(n + p);
-            extended.insertBack(n + p, n + p) = a.weight(p) < 0 ? Scalar(1) : Scalar(-1);
+            extended.insertBack(n + p, n + p) = a.weight(p) < 0 ? 1 : -1;
         }
         extended.finalize();
+        matrix.swap(extended);
     }
 
     /// True where A is positive definite: as many negative pivots as terms of positive weight.
     [[nodiscard]] bool pivots_agree(const SymmetricMatrix<Scalar>& a) const {
-        const Values<Scalar> pivots = m_factor.vectorD();
+        const Values<double> pivots = m_extended_factor.vectorD();
         Index expected = 0;
         for (Index p = 0; p < a.n_terms(); ++p) {
             expected += a.weight(p) < 0 ? 0 : 1;
@@ -148,7 +161,9 @@ private:
         return pivots.allFinite() && (pivots.array() < 0).count() == expected;
     }
 
-    Eigen::SimplicialLDLT<SparseMatrix<Scalar>, Eigen::Lower> m_factor;
+    SparseCholesky m_factor; ///< of matrices without rank-one terms
+    Eigen::SimplicialLDLT<SparseMatrix<double>, Eigen::Lower> m_extended_factor;
+    bool m_has_terms = false; ///< the second is in use
     bool m_analysed = false;
     bool m_factorised = false;
     int m_max_cg_iterations = 12;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/SparseCholesky>
-
 #include <springfit/fit/node_quadratic.hpp>
+#include <springfit/solve/sparse_cholesky.hpp>
 
 namespace springfit::detail {
 
@@ -23,7 +22,7 @@ public:
             }
         }
         m_masked = m_hessian;
-        m_factor.analyzePattern(m_masked);
+        m_factor.analyse(m_masked);
     }
 
     /// Factorises H + ridge diag(H) for the unknowns whose `weight` is not 0; false where that is too close to
@@ -42,8 +41,7 @@ public:
         for (double shift = 1e-14; shift < 1e-5; shift *= 100) {
             m_masked.diagonal().array() += ridge + shift - raised;
             raised = ridge + shift;
-            m_factor.factorize(m_masked);
-            if (m_factor.info() == Eigen::Success) {
+            if (m_factor.factorise(m_masked)) {
                 return true;
             }
         }
@@ -53,33 +51,18 @@ public:
     /// x = H_FF^-1 b, for b that is 0 where nothing is free.
     void solve(const Values<double>& b, Values<double>& x) {
         m_scaled = b.cwiseProduct(m_inverse_root);
-        x = m_factor.solve(m_scaled);
+        m_factor.solve(m_scaled, x);
         x.array() *= m_inverse_root.array();
     }
 
-    /// Entries of the factor, and multiplications and additions that finding them takes.
+    /// Entries of the factor, and multiplications and additions that Eigen would do in the time of finding them.
     [[nodiscard]] double n_entries() const { return m_factor.n_entries(); }
-    [[nodiscard]] double flops() const { return m_factor.flops(); }
+    [[nodiscard]] double flops() const { return m_factor.flops() / SparseCholesky::relative_speed; }
 
 private:
-    /// With what is known once the pattern is analysed.
-    struct Factor : Eigen::SimplicialLLT<SparseMatrix<double>> {
-        [[nodiscard]] double n_entries() const {
-            return static_cast<double>(m_matrix.outerIndexPtr()[m_matrix.cols()]);
-        }
-        [[nodiscard]] double flops() const {
-            double sum = 0;
-            for (Index c = 0; c < m_matrix.cols(); ++c) {
-                const auto rows = static_cast<double>(m_matrix.outerIndexPtr()[c + 1] - m_matrix.outerIndexPtr()[c]);
-                sum += rows * rows;
-            }
-            return sum;
-        }
-    };
-
     Values<double> m_inverse_root, m_scaled;
     SparseMatrix<double> m_hessian, m_masked; ///< lower triangles
-    Factor m_factor;
+    SparseCholesky m_factor;
 };
 
 } // namespace springfit::detail

@@ -5,9 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include <Eigen/SparseCholesky>
-
-#include <springfit/core/types.hpp>
+#include <springfit/solve/sparse_cholesky.hpp>
 
 namespace springfit::detail {
 
@@ -19,21 +17,12 @@ class NodeCholesky {
 public:
     NodeCholesky() = default;
 
-    /// Factorises a matrix given by its lower triangle, in double or single precision as it comes.
+    /// Factorises a matrix given by its lower triangle, in double precision.
     explicit NodeCholesky(const SparseMatrix<Scalar>& lower) {
-        find_order(lower);
-        Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> place(lower.cols());
-        for (std::size_t p = 0; p < m_order.size(); ++p) {
-            for (int d = 0; d < Dim; ++d) {
-                place.indices()(Dim * m_order[p] + d) = Dim * static_cast<int>(p) + d;
-            }
-        }
-        SparseMatrix<Scalar> ordered(lower.rows(), lower.cols());
-        ordered.template selfadjointView<Eigen::Lower>() =
-            lower.template selfadjointView<Eigen::Lower>().twistedBy(place);
-        const Eigen::SimplicialLLT<SparseMatrix<Scalar>, Eigen::Lower, Eigen::NaturalOrdering<int>> factor(ordered);
-        if (factor.info() == Eigen::Success && is_clear(factor.matrixL().nestedExpression(), ordered)) {
-            take_blocks(factor.matrixL().nestedExpression());
+        SparseCholesky factor;
+        if (factor.factorise(lower.template cast<double>(), 1000 * std::numeric_limits<Scalar>::epsilon(), Dim)) {
+            m_order = factor.order();
+            take_blocks(factor);
             m_is_usable = true;
         }
     }
@@ -108,62 +97,33 @@ public:
 private:
     using Corner = Eigen::Matrix<Scalar, Dim, Dim>;
 
-    /// Minimum degree on the graph of the nodes.
-    void find_order(const SparseMatrix<Scalar>& lower) {
-        const Index n = lower.cols() / Dim;
-        std::vector<Eigen::Triplet<Scalar>> entries;
-        for (Index c = 0; c < n; ++c) {
-            for (typename SparseMatrix<Scalar>::InnerIterator entry(lower, Dim * c); entry; ++entry) {
-                if (entry.row() % Dim == 0) {
-                    entries.emplace_back(static_cast<int>(entry.row() / Dim), static_cast<int>(c), Scalar(1));
-                }
-            }
-        }
-        SparseMatrix<Scalar> graph(n, n);
-        graph.setFromTriplets(entries.begin(), entries.end());
-        Eigen::AMDOrdering<int>::PermutationType order;
-        Eigen::AMDOrdering<int>()(graph.template selfadjointView<Eigen::Lower>(), order);
-        m_order.assign(order.indices().data(), order.indices().data() + n);
-    }
-
-    static bool is_clear(const SparseMatrix<Scalar>& l, const SparseMatrix<Scalar>& lower) {
-        for (Index c = 0; c < lower.cols(); ++c) {
-            const Scalar pivot = l.valuePtr()[l.outerIndexPtr()[c]];
-            const Scalar diagonal = lower.valuePtr()[lower.outerIndexPtr()[c]];
-            if (!(pivot * pivot > 1000 * std::numeric_limits<Scalar>::epsilon() * diagonal)) {
-                return false;
-            }
-        }
-        return true;
-    }
-
-    void take_blocks(const SparseMatrix<Scalar>& l) {
-        const Index n = l.cols() / Dim;
+    void take_blocks(const SparseCholesky& factor) {
         m_begin.assign(1, 0);
-        m_corners.resize(static_cast<std::size_t>(n), Corner::Zero());
-        for (Index c = 0; c < n; ++c) {
-            Corner corner = Corner::Zero();
-            std::size_t first = m_blocks.size();
-            for (int d = 0; d < Dim; ++d) {
-                std::size_t block = first;
-                for (typename SparseMatrix<Scalar>::InnerIterator entry(l, Dim * c + d); entry; ++entry) {
-                    const Index r = entry.row() % Dim;
-                    if (entry.row() / Dim == c) {
-                        corner(r, d) = entry.value();
-                        continue;
-                    }
-                    if (d == 0 && r == 0) {
-                        m_rows.push_back(static_cast<int>(entry.row() / Dim));
-                        m_blocks.resize(m_blocks.size() + Dim * stride, 0.F);
-                    }
-                    m_blocks[block + static_cast<std::size_t>(stride * d + r)] = static_cast<float>(entry.value());
-                    block += r == Dim - 1 ? Dim * stride : 0;
+        m_corners.reserve(m_order.size());
+        Corner corner = Corner::Zero();
+        std::size_t first = 0; // block of the node at hand
+        factor.for_columns([&](int column, const int* rows, const double* values, int size) {
+            const int d = column % Dim;
+            std::size_t block = first;
+            for (int p = 0; p < size; ++p) {
+                const int r = rows[p] % Dim;
+                if (rows[p] / Dim == column / Dim) {
+                    corner(r, d) = static_cast<Scalar>(values[p]);
+                    continue;
                 }
+                if (d == 0 && r == 0) {
+                    m_rows.push_back(rows[p] / Dim);
+                    m_blocks.resize(m_blocks.size() + Dim * stride, 0.F);
+                }
+                m_blocks[block + static_cast<std::size_t>(stride * d + r)] = static_cast<float>(values[p]);
+                block += r == Dim - 1 ? Dim * stride : 0;
             }
-            m_begin.push_back(static_cast<int>(m_rows.size()));
-            m_corners[static_cast<std::size_t>(c)] =
-                corner.template triangularView<Eigen::Lower>().solve(Corner::Identity());
-        }
+            if (d == Dim - 1) {
+                m_begin.push_back(static_cast<int>(m_rows.size()));
+                m_corners.push_back(corner.template triangularView<Eigen::Lower>().solve(Corner::Identity()));
+                first = m_blocks.size();
+            }
+        });
     }
 
     bool m_is_usable = false;

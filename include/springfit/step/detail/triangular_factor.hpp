@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/SparseCholesky>
-
+#include <springfit/solve/sparse_cholesky.hpp>
 #include <springfit/step/detail/moving_nodes.hpp>
 
 namespace springfit::detail {
@@ -14,18 +13,21 @@ class TriangularFactor {
 public:
     /// False where the matrix, given by the entries of its lower triangle, is not positive definite.
     [[nodiscard]] bool factorise(int size, const std::vector<Eigen::Triplet<float>>& entries) {
-        Eigen::SparseMatrix<double> matrix(size, size);
+        m_rows.clear();
+        m_values.clear();
+        SparseMatrix<double> matrix(size, size);
         matrix.setFromTriplets(entries.begin(), entries.end());
-        Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower> cholesky(matrix);
-        if (cholesky.info() != Eigen::Success) {
+        SparseCholesky cholesky;
+        if (!cholesky.factorise(matrix)) {
             return false;
         }
-        const Eigen::SparseMatrix<double> lower = cholesky.matrixL();
-        m_first.assign(lower.outerIndexPtr(), lower.outerIndexPtr() + size + 1);
-        m_rows.assign(lower.innerIndexPtr(), lower.innerIndexPtr() + lower.nonZeros());
-        m_values.assign(lower.valuePtr(), lower.valuePtr() + lower.nonZeros());
-        const auto& place = cholesky.permutationP().indices();
-        m_place.assign(place.data(), place.data() + size);
+        m_first.assign(1, 0);
+        cholesky.for_columns([&](int, const int* rows, const double* values, int entries_of_column) {
+            m_rows.insert(m_rows.end(), rows, rows + entries_of_column);
+            m_values.insert(m_values.end(), values, values + entries_of_column);
+            m_first.push_back(static_cast<int>(m_rows.size()));
+        });
+        m_place.assign(cholesky.place().begin(), cholesky.place().end());
         m_work.resize(static_cast<std::size_t>(size));
         for (std::size_t column = 0; column + 1 < m_first.size(); ++column) { // the solves multiply
             float& diagonal = m_values[static_cast<std::size_t>(m_first[column])];
