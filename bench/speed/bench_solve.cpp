@@ -97,6 +97,7 @@ std::vector<Motion<3, double>> static_cases(const SpringNetwork<3, double>& netw
         motion.times = {0};
         motion.positions = {equilibrium(network, scenario).positions};
         motion.velocities = {Points<3, double>::Zero(3, network.n_nodes())};
+        motion.accelerations = motion.velocities;
         motion.external_forces = {load.forces};
         motions.push_back(std::move(motion));
     }
