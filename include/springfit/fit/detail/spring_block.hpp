@@ -148,43 +148,54 @@ void add_cell(ColumnBlock& forces, const Corners& corners, Index column, const C
     }
 }
 
+/// Calls `body(e, i, j, column, spring)` for the lanes of all columns and for all springs e from node i to node j.
+template <int Dim, class Body>
+void for_springs(const SpringNetwork<Dim, double>& network, const ColumnBlock& positions, const Body& body) {
+    for (Index column = 0; column < positions.cols(); column += block_lanes) {
+        for (Index e = 0; e < network.n_springs(); ++e) {
+            const int i = network.springs(0, e);
+            const int j = network.springs(1, e);
+            body(e, i, j, column, SpringLanes<Dim>(positions, i, j, column));
+        }
+    }
+}
+
+/// Calls `body(c, corners, column, cell)` for the lanes of all columns and for all volume cells.
+template <int Dim, class Body>
+void for_cells(const SpringNetwork<Dim, double>& network, const ColumnBlock& positions, const Body& body) {
+    for (Index column = 0; column < positions.cols(); column += block_lanes) {
+        for (Index c = 0; c < network.n_cells(); ++c) {
+            const auto corners = network.cells.col(c);
+            body(c, corners, column, CellLanes<Dim>(positions, corners, column));
+        }
+    }
+}
+
 /// Elastic energy of each column [n_columns], J.
 template <int Dim>
 Eigen::ArrayXd elastic_energy(const SpringNetwork<Dim, double>& network, const ColumnBlock& positions) {
-    Eigen::ArrayXd energy = Eigen::ArrayXd::Zero(positions.cols());
-    for (Index column = 0; column < positions.cols(); column += block_lanes) {
-        ColumnLanes twice = ColumnLanes::Zero();
-        for (Index e = 0; e < network.n_springs(); ++e) {
-            const auto r = difference<Dim>(positions, network.springs(1, e), network.springs(0, e), column);
-            twice += network.stiffness(e) * (dot<Dim>(r, r).sqrt() - network.rest_length(e)).square();
-        }
-        for (Index c = 0; c < network.n_cells(); ++c) {
-            const CellLanes<Dim> cell(positions, network.cells.col(c), column);
-            twice +=
-                network.volume_stiffness(c) / network.rest_volume(c) * (cell.volume - network.rest_volume(c)).square();
-        }
-        energy.segment<block_lanes>(column) = twice / 2;
-    }
-    return energy;
+    Eigen::ArrayXd twice = Eigen::ArrayXd::Zero(positions.cols());
+    for_springs<Dim>(network, positions, [&](Index e, int, int, Index column, const SpringLanes<Dim>& spring) {
+        twice.segment<block_lanes>(column) += network.stiffness(e) * (spring.length - network.rest_length(e)).square();
+    });
+    for_cells<Dim>(network, positions, [&](Index c, const auto&, Index column, const CellLanes<Dim>& cell) {
+        twice.segment<block_lanes>(column) +=
+            network.volume_stiffness(c) / network.rest_volume(c) * (cell.volume - network.rest_volume(c)).square();
+    });
+    return twice / 2;
 }
 
 /// forces += minus the gradient of the elastic energy, N.
 template <int Dim>
 void add_elastic_forces(const SpringNetwork<Dim, double>& network, const ColumnBlock& positions, ColumnBlock& forces) {
-    for (Index column = 0; column < positions.cols(); column += block_lanes) {
-        for (Index e = 0; e < network.n_springs(); ++e) {
-            const int i = network.springs(0, e);
-            const int j = network.springs(1, e);
-            const SpringLanes<Dim> spring(positions, i, j, column);
-            const ColumnLanes tension = network.stiffness(e) * (spring.length - network.rest_length(e));
-            add_pair<Dim>(forces, i, j, column, scaled<Dim>(tension, spring.n));
-        }
-        for (Index c = 0; c < network.n_cells(); ++c) {
-            const CellLanes<Dim> cell(positions, network.cells.col(c), column);
-            const ColumnLanes pressure = network.volume_stiffness(c) * (1 - cell.volume / network.rest_volume(c));
-            add_cell<Dim>(forces, network.cells.col(c), column, pressure, cell.gradient);
-        }
-    }
+    for_springs<Dim>(network, positions, [&](Index e, int i, int j, Index column, const SpringLanes<Dim>& spring) {
+        const ColumnLanes tension = network.stiffness(e) * (spring.length - network.rest_length(e));
+        add_pair<Dim>(forces, i, j, column, scaled<Dim>(tension, spring.n));
+    });
+    for_cells<Dim>(network, positions, [&](Index c, const auto& corners, Index column, const CellLanes<Dim>& cell) {
+        const ColumnLanes pressure = network.volume_stiffness(c) * (1 - cell.volume / network.rest_volume(c));
+        add_cell<Dim>(forces, corners, column, pressure, cell.gradient);
+    });
 }
 
 /// product += K(positions) direction, K the Hessian of the elastic energy, exact or made positive semidefinite as
@@ -193,98 +204,75 @@ template <int Dim>
 void add_stiffness_product(const SpringNetwork<Dim, double>& network, const ColumnBlock& positions, Curvature curvature,
                            const ColumnBlock& direction, ColumnBlock& product) {
     const bool exact = curvature == Curvature::exact;
-    for (Index column = 0; column < positions.cols(); column += block_lanes) {
-        for (Index e = 0; e < network.n_springs(); ++e) {
-            const int i = network.springs(0, e);
-            const int j = network.springs(1, e);
-            const SpringLanes<Dim> spring(positions, i, j, column);
-            const auto moved = difference<Dim>(direction, j, i, column);
-            ColumnLanes across = network.stiffness(e) * (1 - network.rest_length(e) * spring.inverse_length);
-            if (!exact) {
-                across = across.max(0.);
-            }
-            const ColumnLanes along = (network.stiffness(e) - across) * dot<Dim>(spring.n, moved);
-            LaneVector<Dim> force;
-            for (int d = 0; d < Dim; ++d) {
-                force[d] = along * spring.n[d] + across * moved[d];
-            }
-            add_pair<Dim>(product, j, i, column, force);
+    for_springs<Dim>(network, positions, [&](Index e, int i, int j, Index column, const SpringLanes<Dim>& spring) {
+        const auto moved = difference<Dim>(direction, j, i, column);
+        ColumnLanes across = network.stiffness(e) * (1 - network.rest_length(e) * spring.inverse_length);
+        if (!exact) {
+            across = across.max(0.);
         }
-        for (Index c = 0; c < network.n_cells(); ++c) {
-            if (!exact && !(network.volume_stiffness(c) > 0)) {
-                continue;
-            }
-            const auto corners = network.cells.col(c);
-            const CellLanes<Dim> cell(positions, corners, column);
-            const auto moved = sides_of<Dim>(direction, corners, column);
-            const double modulus = network.volume_stiffness(c) / network.rest_volume(c);
-            add_cell<Dim>(product, corners, column, modulus * cell.volume_along(moved), cell.gradient);
-            if (exact) {
-                add_cell<Dim>(product, corners, column, modulus * (cell.volume - network.rest_volume(c)),
-                              cell.gradient_along(moved));
-            }
+        const ColumnLanes along = (network.stiffness(e) - across) * dot<Dim>(spring.n, moved);
+        LaneVector<Dim> force;
+        for (int d = 0; d < Dim; ++d) {
+            force[d] = along * spring.n[d] + across * moved[d];
         }
-    }
+        add_pair<Dim>(product, j, i, column, force);
+    });
+    for_cells<Dim>(network, positions, [&](Index c, const auto& corners, Index column, const CellLanes<Dim>& cell) {
+        if (!exact && !(network.volume_stiffness(c) > 0)) {
+            return;
+        }
+        const auto moved = sides_of<Dim>(direction, corners, column);
+        const double modulus = network.volume_stiffness(c) / network.rest_volume(c);
+        add_cell<Dim>(product, corners, column, modulus * cell.volume_along(moved), cell.gradient);
+        if (exact) {
+            add_cell<Dim>(product, corners, column, modulus * (cell.volume - network.rest_volume(c)),
+                          cell.gradient_along(moved));
+        }
+    });
 }
 
 /// product += factor * D direction, D = sum c_e n_e n_e' with n_e at `positions`.
 template <int Dim>
 void add_damping_product(const SpringNetwork<Dim, double>& network, const ColumnBlock& positions, double factor,
                          const ColumnBlock& direction, ColumnBlock& product) {
-    for (Index column = 0; column < positions.cols(); column += block_lanes) {
-        for (Index e = 0; e < network.n_springs(); ++e) {
-            const int i = network.springs(0, e);
-            const int j = network.springs(1, e);
-            const SpringLanes<Dim> spring(positions, i, j, column);
-            const ColumnLanes rate = dot<Dim>(spring.n, difference<Dim>(direction, j, i, column));
-            add_pair<Dim>(product, j, i, column, scaled<Dim>(factor * network.damping(e) * rate, spring.n));
-        }
-    }
+    for_springs<Dim>(network, positions, [&](Index e, int i, int j, Index column, const SpringLanes<Dim>& spring) {
+        const ColumnLanes rate = dot<Dim>(spring.n, difference<Dim>(direction, j, i, column));
+        add_pair<Dim>(product, j, i, column, scaled<Dim>(factor * network.damping(e) * rate, spring.n));
+    });
 }
 
 /// derivative += d(test . D(positions) rates) / d(positions), by the directions of the springs.
 template <int Dim>
 void add_damping_derivative(const SpringNetwork<Dim, double>& network, const ColumnBlock& positions,
                             const ColumnBlock& rates, const ColumnBlock& test, double factor, ColumnBlock& derivative) {
-    for (Index column = 0; column < positions.cols(); column += block_lanes) {
-        for (Index e = 0; e < network.n_springs(); ++e) {
-            const int i = network.springs(0, e);
-            const int j = network.springs(1, e);
-            const SpringLanes<Dim> spring(positions, i, j, column);
-            const auto rate = difference<Dim>(rates, j, i, column);
-            const auto tested = difference<Dim>(test, j, i, column);
-            const ColumnLanes rate_along = dot<Dim>(spring.n, rate);
-            const ColumnLanes test_along = dot<Dim>(spring.n, tested);
-            const ColumnLanes scale = factor * network.damping(e) * spring.inverse_length;
-            LaneVector<Dim> change; // of the spring's vector r
-            for (int d = 0; d < Dim; ++d) {
-                change[d] =
-                    scale * (tested[d] * rate_along + rate[d] * test_along - 2 * rate_along * test_along * spring.n[d]);
-            }
-            add_pair<Dim>(derivative, j, i, column, change);
+    for_springs<Dim>(network, positions, [&](Index e, int i, int j, Index column, const SpringLanes<Dim>& spring) {
+        const auto rate = difference<Dim>(rates, j, i, column);
+        const auto tested = difference<Dim>(test, j, i, column);
+        const ColumnLanes rate_along = dot<Dim>(spring.n, rate);
+        const ColumnLanes test_along = dot<Dim>(spring.n, tested);
+        const ColumnLanes scale = factor * network.damping(e) * spring.inverse_length;
+        LaneVector<Dim> change; // of the spring's vector r
+        for (int d = 0; d < Dim; ++d) {
+            change[d] =
+                scale * (tested[d] * rate_along + rate[d] * test_along - 2 * rate_along * test_along * spring.n[d]);
         }
-    }
+        add_pair<Dim>(derivative, j, i, column, change);
+    });
 }
 
 /// forces += the change of the elastic forces with the network's stiffness, rest length and volume stiffness.
 template <int Dim>
 void add_parameter_forces(const SpringNetwork<Dim, double>& network, const NetworkValues& change,
                           const ColumnBlock& positions, ColumnBlock& forces) {
-    for (Index column = 0; column < positions.cols(); column += block_lanes) {
-        for (Index e = 0; e < network.n_springs(); ++e) {
-            const int i = network.springs(0, e);
-            const int j = network.springs(1, e);
-            const SpringLanes<Dim> spring(positions, i, j, column);
-            const ColumnLanes tension = change.stiffness(e) * (spring.length - network.rest_length(e)) -
-                                        network.stiffness(e) * change.rest_length(e);
-            add_pair<Dim>(forces, i, j, column, scaled<Dim>(tension, spring.n));
-        }
-        for (Index c = 0; c < network.n_cells(); ++c) {
-            const CellLanes<Dim> cell(positions, network.cells.col(c), column);
-            const ColumnLanes pressure = change.volume_stiffness(c) * (1 - cell.volume / network.rest_volume(c));
-            add_cell<Dim>(forces, network.cells.col(c), column, pressure, cell.gradient);
-        }
-    }
+    for_springs<Dim>(network, positions, [&](Index e, int i, int j, Index column, const SpringLanes<Dim>& spring) {
+        const ColumnLanes tension = change.stiffness(e) * (spring.length - network.rest_length(e)) -
+                                    network.stiffness(e) * change.rest_length(e);
+        add_pair<Dim>(forces, i, j, column, scaled<Dim>(tension, spring.n));
+    });
+    for_cells<Dim>(network, positions, [&](Index c, const auto& corners, Index column, const CellLanes<Dim>& cell) {
+        const ColumnLanes pressure = change.volume_stiffness(c) * (1 - cell.volume / network.rest_volume(c));
+        add_cell<Dim>(forces, corners, column, pressure, cell.gradient);
+    });
 }
 
 /// derivative += d(test . elastic forces) / d(stiffness, rest length, volume stiffness), summed over the columns: the
@@ -292,53 +280,36 @@ void add_parameter_forces(const SpringNetwork<Dim, double>& network, const Netwo
 template <int Dim>
 void add_parameter_derivative(const SpringNetwork<Dim, double>& network, const ColumnBlock& positions,
                               const ColumnBlock& test, NetworkValues& derivative) {
-    for (Index column = 0; column < positions.cols(); column += block_lanes) {
-        for (Index e = 0; e < network.n_springs(); ++e) {
-            const int i = network.springs(0, e);
-            const int j = network.springs(1, e);
-            const SpringLanes<Dim> spring(positions, i, j, column);
-            const ColumnLanes along = dot<Dim>(spring.n, difference<Dim>(test, i, j, column));
-            derivative.stiffness(e) += (along * (spring.length - network.rest_length(e))).sum();
-            derivative.rest_length(e) -= network.stiffness(e) * along.sum();
-        }
-        for (Index c = 0; c < network.n_cells(); ++c) {
-            const auto corners = network.cells.col(c);
-            const CellLanes<Dim> cell(positions, corners, column);
-            const ColumnLanes along = cell.volume_along(sides_of<Dim>(test, corners, column));
-            derivative.volume_stiffness(c) += (along * (1 - cell.volume / network.rest_volume(c))).sum();
-        }
-    }
+    for_springs<Dim>(network, positions, [&](Index e, int i, int j, Index column, const SpringLanes<Dim>& spring) {
+        const ColumnLanes along = dot<Dim>(spring.n, difference<Dim>(test, i, j, column));
+        derivative.stiffness(e) += (along * (spring.length - network.rest_length(e))).sum();
+        derivative.rest_length(e) -= network.stiffness(e) * along.sum();
+    });
+    for_cells<Dim>(network, positions, [&](Index c, const auto& corners, Index column, const CellLanes<Dim>& cell) {
+        const ColumnLanes along = cell.volume_along(sides_of<Dim>(test, corners, column));
+        derivative.volume_stiffness(c) += (along * (1 - cell.volume / network.rest_volume(c))).sum();
+    });
 }
 
 /// forces += the change of the damping forces -D rates with c; n_e at `positions`.
 template <int Dim>
 void add_damping_parameter_forces(const SpringNetwork<Dim, double>& network, const NetworkValues& change,
                                   const ColumnBlock& positions, const ColumnBlock& rates, ColumnBlock& forces) {
-    for (Index column = 0; column < positions.cols(); column += block_lanes) {
-        for (Index e = 0; e < network.n_springs(); ++e) {
-            const int i = network.springs(0, e);
-            const int j = network.springs(1, e);
-            const SpringLanes<Dim> spring(positions, i, j, column);
-            const ColumnLanes rate = dot<Dim>(spring.n, difference<Dim>(rates, j, i, column));
-            add_pair<Dim>(forces, i, j, column, scaled<Dim>(change.damping(e) * rate, spring.n));
-        }
-    }
+    for_springs<Dim>(network, positions, [&](Index e, int i, int j, Index column, const SpringLanes<Dim>& spring) {
+        const ColumnLanes rate = dot<Dim>(spring.n, difference<Dim>(rates, j, i, column));
+        add_pair<Dim>(forces, i, j, column, scaled<Dim>(change.damping(e) * rate, spring.n));
+    });
 }
 
 /// derivative += d(test . -D rates) / dc, summed over the columns.
 template <int Dim>
 void add_damping_parameter_derivative(const SpringNetwork<Dim, double>& network, const ColumnBlock& positions,
                                       const ColumnBlock& rates, const ColumnBlock& test, NetworkValues& derivative) {
-    for (Index column = 0; column < positions.cols(); column += block_lanes) {
-        for (Index e = 0; e < network.n_springs(); ++e) {
-            const int i = network.springs(0, e);
-            const int j = network.springs(1, e);
-            const SpringLanes<Dim> spring(positions, i, j, column);
-            const ColumnLanes rate = dot<Dim>(spring.n, difference<Dim>(rates, j, i, column));
-            const ColumnLanes along = dot<Dim>(spring.n, difference<Dim>(test, i, j, column));
-            derivative.damping(e) += (rate * along).sum();
-        }
-    }
+    for_springs<Dim>(network, positions, [&](Index e, int i, int j, Index column, const SpringLanes<Dim>& spring) {
+        const ColumnLanes rate = dot<Dim>(spring.n, difference<Dim>(rates, j, i, column));
+        const ColumnLanes along = dot<Dim>(spring.n, difference<Dim>(test, i, j, column));
+        derivative.damping(e) += (rate * along).sum();
+    });
 }
 
 } // namespace springfit::detail
