@@ -371,3 +371,19 @@ TEST_CASE_TEMPLATE("a horizon of one short step is the acceleration fit", T, Dim
     }
     CHECK(last < 0.05);
 }
+
+TEST_CASE("small gains end a search only where they do not grow") {
+    detail::SmallGains gains(0.01);
+    const auto add = [&](double gain) {
+        gains.add(gain, 1.);
+        return gains.enough();
+    };
+    CHECK_FALSE(add(0.5));
+    CHECK_FALSE(add(0.004)); // the first step after one that was stepped back from
+    CHECK_FALSE(add(0.008)); // less damped
+    CHECK_FALSE(add(0.02));
+    CHECK_FALSE(add(0.005));
+    CHECK_FALSE(add(0.02));
+    CHECK_FALSE(add(0.005));
+    CHECK(add(0.005));
+}

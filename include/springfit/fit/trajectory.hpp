@@ -42,7 +42,8 @@ enum class GaussNewtonForm {
 
 struct GaussNewtonOptions {
     int max_iterations = 40;
-    double tolerance = 1e-3; ///< stop when an iteration lowers J by less than this part, twice running; > 0
+    /// Stop when an iteration lowers J by less than this part, twice running, and gains do not grow; > 0.
+    double tolerance = 1e-3;
     GaussNewtonForm form = GaussNewtonForm::automatic;
     int max_cg_iterations = 40;  ///< of each matrix-free step
     double cg_tolerance = 0.05;  ///< relative residual of each matrix-free step, in (0, 1)
@@ -122,6 +123,28 @@ inline double largest_projected(const Values<double>& gradient, const std::vecto
     return largest;
 }
 
+/// Whether iterations have gained too little for a search to go on: less than a part of what is left twice running, the
+/// second no more than the first. Gains that grow are those of steps that damping still shortens.
+class SmallGains {
+public:
+    explicit SmallGains(double part) : m_part(part) {}
+
+    /// An iteration lowered the objective by `gain` from `value`.
+    void add(double gain, double value) {
+        const bool is_small = gain < m_part * value;
+        m_enough = is_small && m_was_small && gain <= m_last;
+        m_was_small = is_small;
+        m_last = gain;
+    }
+    [[nodiscard]] bool enough() const { return m_enough; }
+
+private:
+    double m_part;
+    double m_last = 0;
+    bool m_was_small = false;
+    bool m_enough = false;
+};
+
 /// The curvature of the data along each unknown, and what part the data has in it beside the prior.
 inline void set_curvature(Values<double> curvature, double lambda, TrajectoryReport& report) {
     report.data_share = curvature.array() / (curvature.array() + std::max(lambda, 1e-300));
@@ -197,7 +220,7 @@ template <int Dim>
     report.status = Status::iteration_limit;
 
     double mu = 0;
-    int small_gains = 0;
+    detail::SmallGains small_gains(options.tolerance);
     bool fresh = true; // the matrix at `point` is still to be made
     DenseMatrix<double> dense;
     Values<double> diagonal;
@@ -221,7 +244,7 @@ template <int Dim>
             }
             fresh = false;
         }
-        if (report.gradient_max <= 1e-14 || small_gains >= 2) {
+        if (report.gradient_max <= 1e-14 || small_gains.enough()) {
             report.status = Status::converged;
             break;
         }
@@ -273,7 +296,7 @@ template <int Dim>
         }
         ++report.iterations;
         const double gain = point->value() - trial->value();
-        small_gains = gain < options.tolerance * point->value() ? small_gains + 1 : 0;
+        small_gains.add(gain, point->value());
         mu = mu < 1e-6 * diagonal.maxCoeff() ? 0. : mu / 5;
         point.swap(trial);
         gradient.swap(trial_gradient);
