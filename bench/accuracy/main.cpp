@@ -19,10 +19,9 @@ void on_interrupt(int signal) {
 }
 
 constexpr const char* usage =
-    "springfit_study [--quick] [--large] [--out DIR] [--data DIR] [--seed N] [--only PART]...\n"
+    "springfit_study [--quick] [--out DIR] [--data DIR] [--seed N] [--only PART]...\n"
     "  Fits every method on every mesh and scores it on unseen motion; writes tables and figures.\n"
     "  --quick     a few small rows of each part\n"
-    "  --large     also the fit of 1e5 springs\n"
     "  --out DIR   where to write (docs/results; quick: study-quick)\n"
     "  --data DIR  a folder with elephant.off and other surfaces; without it they are left out\n"
     "  --seed N    of all load cases (1)\n"
@@ -60,8 +59,8 @@ int read(int argc, char** argv, Arguments& arguments) {
             std::cout << usage;
             return 0;
         }
-        if (option == "--quick" || option == "--large") {
-            (option == "--quick" ? arguments.settings.quick : arguments.settings.large) = true;
+        if (option == "--quick") {
+            arguments.settings.quick = true;
             arguments.command += " " + option;
             continue;
         }

@@ -20,7 +20,6 @@ using springfit::Index;
 
 struct Settings {
     bool quick = false;         ///< a few small rows of each part
-    bool large = false;         ///< also the fit of 1e5 springs
     std::filesystem::path data; ///< folder of surfaces; empty: parts that need them are skipped
     unsigned seed = 1;
     springfit::Execution execution{};
