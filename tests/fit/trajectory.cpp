@@ -297,6 +297,65 @@ TEST_CASE_TEMPLATE("what springs did is found again from their motion", T, Dimen
     }
 }
 
+TEST_CASE("the springs of a stretched membrane, which resist nothing sideways at rest, are found from its equilibria") {
+    auto flat = triangle_grid<double>({4, 3}, {1., 0.8});
+    jitter(flat, 0.2, 3u);
+    Points<3, double> nodes = Points<3, double>::Zero(3, flat.n_nodes());
+    nodes.topRows<2>() = flat.nodes;
+    auto network = test::network_at_rest<3, double>(nodes, edges(flat));
+    Random random(7);
+    for (Index e = 0; e < network.n_springs(); ++e) {
+        network.stiffness(e) = random(0.5, 2.);
+    }
+    std::vector<int> rim;
+    for (int i = 0; i < network.n_nodes(); ++i) {
+        if (nodes(0, i) < 1e-9 || nodes(0, i) > 1 - 1e-9 || nodes(1, i) < 1e-9 || nodes(1, i) > 0.8 - 1e-9) {
+            rim.push_back(i);
+        }
+    }
+    REQUIRE(rim.size() < static_cast<std::size_t>(network.n_nodes()));
+    std::vector<Motion<3, double>> cases;
+    for (int c = 0; c < 12; ++c) {
+        Scenario<3, double> scenario;
+        scenario.clamps.push_back({rim, [](const Vector<3, double>& rest, double) { return 1.04 * rest; }});
+        scenario.initial_positions = 1.04 * nodes;
+        NodalLoad<3, double> load;
+        for (int i = 0; i < network.n_nodes(); ++i) {
+            load.nodes.push_back(i);
+        }
+        load.forces = random.points<3, double>(network.n_nodes(), 0.02);
+        scenario.loads.push_back(load);
+        const auto balance = equilibrium(network, scenario);
+        REQUIRE(balance.stable);
+        Motion<3, double> motion;
+        motion.name = text("case ", c);
+        motion.rest_positions = nodes;
+        motion.clamped = rim;
+        motion.times = {0.};
+        motion.positions = {balance.positions};
+        motion.velocities = {Points<3, double>::Zero(3, network.n_nodes())};
+        motion.accelerations = motion.velocities;
+        motion.external_forces = {load.forces};
+        cases.push_back(std::move(motion));
+    }
+    const auto prior = disturbed(network, 0.5, 4);
+    TrajectoryOptions options;
+    options.prior_weight = 1e-12;
+    const TrajectoryProblem<3> problem(prior, cases, options);
+    const auto report = gauss_newton(problem, {.max_iterations = 60, .tolerance = 1e-8});
+    CHECK(usable(report.status));
+    CHECK(report.misfit < 1e-4 * report.misfit_start);
+    auto fitted = prior;
+    apply(problem, report, fitted);
+    for (Index e = 0; e < network.n_springs(); ++e) {
+        CAPTURE(e);
+        if (report.data_share(e) > 0.5) {
+            CHECK(fitted.stiffness(e) == doctest::Approx(network.stiffness(e)).epsilon(1e-2));
+        }
+    }
+    CHECK(report.n_set_by_data() > network.n_springs() / 2);
+}
+
 TEST_CASE_TEMPLATE("a horizon of one short step is the acceleration fit", T, Dimension<2>, Dimension<3>) {
     constexpr int Dim = T::value;
     const Fixture<Dim> fixture(false);

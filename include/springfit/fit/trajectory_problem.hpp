@@ -105,7 +105,7 @@ public:
     [[nodiscard]] bool gradient(Values<double>& gradient);
 
     /// H direction, H = J' W J + lambda I the Gauss-Newton matrix. Two solves per case and step, each by conjugate
-    /// gradients with the one factorisation at the rest shape: one iteration at small strain, a few at large.
+    /// gradients with the one factorisation: one iteration at small strain, a few at large.
     [[nodiscard]] Values<double> product(const Values<double>& direction);
 
     /// True where `dense` may be used: static cases, stiffness and volume alone fitted, springs turned little.

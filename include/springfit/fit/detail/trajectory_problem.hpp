@@ -104,7 +104,8 @@ std::size_t TrajectoryProblem<Dim>::group_of(const std::vector<int>& clamped, do
     FreeNodes free(m_parameters.prior().n_nodes(), clamped);
     require(free.n_free() > 0, "motions", "nodes that are free to move", "none");
     auto pattern = spring_matrix(m_parameters.prior(), free);
-    m_groups.push_back({clamped, std::move(free), step, std::move(pattern)});
+    const Points<Dim, double> none = Points<Dim, double>::Zero(Dim, free.n_nodes());
+    m_groups.push_back({clamped, std::move(free), step, std::move(pattern), none});
     return m_groups.size() - 1;
 }
 
@@ -125,6 +126,7 @@ void TrajectoryProblem<Dim>::add_windows(std::size_t number, std::vector<detail:
         }
     }
     const std::size_t group = group_of(motion.clamped, step);
+    m_groups[group].mean += (motion.positions.front() - m_groups[group].mean) / ++m_groups[group].n_motions;
     double from_rest = 0;
     double from_straight = 0;
     const std::size_t before = single.size();
@@ -212,18 +214,26 @@ bool TrajectoryPoint<Dim>::move_to(const Values<double>& theta, const Trajectory
     std::vector<char> good(m_factors.size(), 0);
     execution.for_chunks(static_cast<Index>(m_factors.size()), 1, [&](Index, Index g, Index) {
         const auto& group = m_problem->m_groups[static_cast<std::size_t>(g)];
-        auto matrix = group.pattern;
-        matrix.set_zero();
-        add_stiffness<Dim, double>(m_network, m_network.rest_positions, Curvature::exact, matrix);
-        if (group.step > 0) {
-            const double part = alpha * group.step;
-            add_damping<Dim, double>(m_network, m_network.rest_positions, 1 / part, matrix);
-            for (Index f = 0; f < group.free.n_free(); ++f) {
-                matrix.add_diagonal(f, m_network.mass(group.free.nodes()[static_cast<std::size_t>(f)]) / (part * part));
+        const auto at = static_cast<std::size_t>(g);
+        // Membranes and the like resist nothing sideways at rest, but do where they are stretched.
+        for (const auto* shape :
+             std::initializer_list<const Points<Dim, double>*>{&m_network.rest_positions, &group.mean}) {
+            auto matrix = group.pattern;
+            matrix.set_zero();
+            add_stiffness<Dim, double>(m_network, *shape, Curvature::exact, matrix);
+            if (group.step > 0) {
+                const double part = alpha * group.step;
+                add_damping<Dim, double>(m_network, *shape, 1 / part, matrix);
+                for (Index f = 0; f < group.free.n_free(); ++f) {
+                    const double mass = m_network.mass(group.free.nodes()[static_cast<std::size_t>(f)]);
+                    matrix.add_diagonal(f, mass / (part * part));
+                }
+            }
+            if (m_factors[at]->template factorise<Dim>(matrix.matrix(), group.free)) {
+                good[at] = 1;
+                break;
             }
         }
-        const auto at = static_cast<std::size_t>(g);
-        good[at] = m_factors[at]->template factorise<Dim>(matrix.matrix(), group.free) ? 1 : 0;
     });
     if (std::find(good.begin(), good.end(), 0) != good.end()) {
         return false;

@@ -26,6 +26,8 @@ struct WindowGroup {
     FreeNodes free;
     double step = 0; ///< h, s; 0: statics
     CliqueMatrix<Dim, double> pattern;
+    Points<Dim, double> mean; ///< positions that its motions begin with
+    int n_motions = 0;
 };
 
 /// How a step of h goes from (x, v): y is where an implicit Euler step of alpha h leads, and the step is carried on
