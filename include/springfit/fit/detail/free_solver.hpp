@@ -99,7 +99,7 @@ private:
     enum class Preconditioner { diagonal, factor };
     static constexpr Index unknowns_per_chunk = 2048;
     static constexpr Index most_factorised = 250000; ///< unknowns; in solids a factor has 1000 entries for each there
-    static constexpr int patience = 300;    ///< iterations in all before a factorisation is thought of: its analysis
+    static constexpr int patience = 1000;   ///< iterations in all before a factorisation is thought of: its analysis
                                             ///< takes about as long
     static constexpr double n_expected = 5; ///< factorisations until the end, once they begin
     static constexpr double product_slowness =
