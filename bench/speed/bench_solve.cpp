@@ -81,7 +81,8 @@ std::vector<Motion<3, double>> static_cases(const SpringNetwork<3, double>& netw
     std::normal_distribution<double> normal;
     std::vector<Motion<3, double>> motions;
     for (int c = 0; c < n_cases; ++c) {
-        const Vector<3, double> direction = Vector<3, double>(normal(random), normal(random), normal(random)).normalized();
+        const Vector<3, double> direction =
+            Vector<3, double>(normal(random), normal(random), normal(random)).normalized();
         Motion<3, double> motion;
         motion.name = "case " + std::to_string(c);
         motion.rest_positions = network.rest_positions;
