@@ -16,7 +16,7 @@ namespace springfit {
 /// Sparse Cholesky factorisations L L' of symmetric positive definite matrices of one pattern.
 ///
 /// Eigen's, or CHOLMOD's in programs that link springfit::cholmod: its nested dissection fills solids less and its
-/// dense kernels are ten times as fast and more. One factorisation at a time; once made, threads may share it.
+/// dense kernels are several times as fast. One factorisation at a time; once made, threads may share it.
 /// Memory: 12 bytes per entry of L, 8 with CHOLMOD.
 template <class Factor>
 class BasicSparseCholesky {
