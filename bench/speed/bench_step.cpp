@@ -50,11 +50,21 @@ void explicit_step_random_order(benchmark::State& state, Index springs) {
     bench::step_body(state, shuffled(bench::network<Dim, Scalar>(springs)));
 }
 
+/// With a cell for each simplex of the grid; per spring.
+template <int Dim, class Scalar>
+void explicit_step_volume(benchmark::State& state, Index springs) {
+    bench::step_body(state, bench::network<Dim, Scalar>(springs, true));
+}
+
+template <int Dim, class Scalar>
+void plain_loop_volume(benchmark::State& state, Index springs) {
+    bench::step_plainly(state, bench::network<Dim, Scalar>(springs, true));
+}
+
 /// 64 bodies of a network; per spring of each.
 template <int Dim, class Scalar>
-void batch_step(benchmark::State& state, Index springs) {
+void step_batch(benchmark::State& state, const SpringNetwork<Dim, Scalar>& network) {
     constexpr Index n_bodies = 64;
-    const auto network = bench::network<Dim, Scalar>(springs);
     const Scalar h = stable_step(network) / 2;
     SpringBatch<Dim, Scalar> batch(network, n_bodies);
     for (Index b = 0; b < n_bodies; ++b) {
@@ -65,6 +75,16 @@ void batch_step(benchmark::State& state, Index springs) {
         benchmark::ClobberMemory();
     }
     bench::count(state, n_bodies * network.n_springs());
+}
+
+template <int Dim, class Scalar>
+void batch_step(benchmark::State& state, Index springs) {
+    step_batch(state, bench::network<Dim, Scalar>(springs));
+}
+
+template <int Dim, class Scalar>
+void batch_step_volume(benchmark::State& state, Index springs) {
+    step_batch(state, bench::network<Dim, Scalar>(springs, true));
 }
 
 #ifdef SPRINGFIT_BENCH_PARALLEL
@@ -213,8 +233,11 @@ void add() {
         };
         add_one("plain_loop", bench::plain_loop<Dim, Scalar>);
         add_one("explicit_step", bench::explicit_step<Dim, Scalar>);
+        add_one("plain_loop_volume", plain_loop_volume<Dim, Scalar>);
+        add_one("explicit_step_volume", explicit_step_volume<Dim, Scalar>);
         if (springs <= 10000) {
             add_one("batch_step", batch_step<Dim, Scalar>);
+            add_one("batch_step_volume", batch_step_volume<Dim, Scalar>);
         }
         if (springs >= 100000) {
             add_one("plain_loop_random_order", plain_loop_random_order<Dim, Scalar>);

@@ -21,21 +21,23 @@ template <int Dim, class Scalar>
 }
 
 /// Springs along the edges of a jittered grid of simplices, about `springs` of them (3 per node in the plane, 7 in
-/// space), with stiffness over a decade and light damping.
+/// space), with stiffness over a decade and light damping; on request with its cells, 2 per node or 6, of the springs'
+/// stiffness.
 template <int Dim, class Scalar>
-[[nodiscard]] springfit::SpringNetwork<Dim, Scalar> network(springfit::Index springs) {
+[[nodiscard]] springfit::SpringNetwork<Dim, Scalar> network(springfit::Index springs, bool volume = false) {
     using namespace springfit;
+    const SpringOptions<Scalar> options{.volume = volume, .density = Scalar(1000)};
     auto result = [&] {
         if constexpr (Dim == 2) {
             const int n = static_cast<int>(std::lround(std::sqrt(static_cast<double>(springs) / 3)));
             auto mesh = triangle_grid<Scalar>({n, n}, {Scalar(1), Scalar(1)});
             jitter(mesh, Scalar(0.2), 1);
-            return springs_along_edges(mesh, {.density = Scalar(1000)});
+            return springs_along_edges(mesh, options);
         } else {
             const int n = static_cast<int>(std::lround(std::cbrt(static_cast<double>(springs) / 7)));
             auto mesh = tetrahedron_grid<Scalar>({n, n, n}, {Scalar(1), Scalar(1), Scalar(1)});
             jitter(mesh, Scalar(0.2), 1);
-            return springs_along_edges(mesh, {.density = Scalar(1000)});
+            return springs_along_edges(mesh, options);
         }
     }();
     std::mt19937 random(2);
@@ -43,6 +45,9 @@ template <int Dim, class Scalar>
     for (Index e = 0; e < result.n_springs(); ++e) {
         result.stiffness(e) = Scalar(1e4) * std::pow(Scalar(10), decade(random)) * result.rest_length(e);
         result.damping(e) = Scalar(1e-3) * result.stiffness(e);
+    }
+    if (volume) {
+        result.volume_stiffness.setConstant(Scalar(1e4));
     }
     return result;
 }
@@ -61,6 +66,9 @@ template <int Dim, class Scalar>
     copy(body.rest_length, network.rest_length);
     copy(body.damping, network.damping);
     body.fixed.assign(body.mass.size(), 0);
+    copy(body.corners, network.cells);
+    copy(body.rest_volume, network.rest_volume);
+    copy(body.volume_stiffness, network.volume_stiffness);
     return body;
 }
 

@@ -13,7 +13,49 @@ struct Body {
     std::vector<int> ends;                    // two per spring
     std::vector<Scalar> k, rest_length, damping;
     std::vector<char> fixed;
+    std::vector<int> corners; // Dim + 1 per cell
+    std::vector<Scalar> rest_volume, volume_stiffness;
 };
+
+/// The forces of cells that hold their volume, from the first corner's edges.
+template <int Dim, class Scalar>
+void add_cells(Body<Dim, Scalar>& body) {
+    for (std::size_t c = 0; c < body.rest_volume.size(); ++c) {
+        const int* corners = &body.corners[(Dim + 1) * c];
+        Scalar edges[Dim][Dim], gradients[Dim][Dim];
+        for (int a = 0; a < Dim; ++a) {
+            for (int d = 0; d < Dim; ++d) {
+                edges[a][d] = body.x[static_cast<std::size_t>(Dim * corners[a + 1] + d)] -
+                              body.x[static_cast<std::size_t>(Dim * corners[0] + d)];
+            }
+        }
+        if constexpr (Dim == 2) {
+            gradients[0][0] = edges[1][1] / 2;
+            gradients[0][1] = -edges[1][0] / 2;
+            gradients[1][0] = -edges[0][1] / 2;
+            gradients[1][1] = edges[0][0] / 2;
+        } else {
+            for (int a = 0; a < 3; ++a) {
+                const Scalar* p = edges[(a + 1) % 3];
+                const Scalar* q = edges[(a + 2) % 3];
+                for (int d = 0; d < 3; ++d) {
+                    gradients[a][d] = (p[(d + 1) % 3] * q[(d + 2) % 3] - p[(d + 2) % 3] * q[(d + 1) % 3]) / 6;
+                }
+            }
+        }
+        Scalar volume = 0;
+        for (int d = 0; d < Dim; ++d) {
+            volume += edges[0][d] * gradients[0][d];
+        }
+        const Scalar pressure = body.volume_stiffness[c] * (1 - volume / body.rest_volume[c]);
+        for (int a = 0; a < Dim; ++a) {
+            for (int d = 0; d < Dim; ++d) {
+                body.f[static_cast<std::size_t>(Dim * corners[a + 1] + d)] += pressure * gradients[a][d];
+                body.f[static_cast<std::size_t>(Dim * corners[0] + d)] -= pressure * gradients[a][d];
+            }
+        }
+    }
+}
 
 /// One symplectic Euler step, springs in their given order.
 template <int Dim, class Scalar>
@@ -44,6 +86,7 @@ void step(Body<Dim, Scalar>& body, Scalar dt) {
             fj[d] -= pull * r[d];
         }
     }
+    add_cells(body);
     for (std::size_t i = 0; i < body.mass.size(); ++i) {
         if (body.fixed[i]) {
             continue;

@@ -219,13 +219,14 @@ def page_of_machine(runs, machine, options):
 
 
 def is_step(row):
-    return re.search(r"(_step|_force|_loop)(_random_order|_two_threads|_tight)?(_\d+)?$", row.what) is not None
+    return re.search(r"(_step|_force|_loop)(_random_order|_two_threads|_tight|_volume)?(_\d+)?$", row.what) is not None
 
 
 def plain_step(row):
     """What a step is compared with."""
-    if row.what.endswith("random_order"):
-        return ["plain_loop_random_order"]
+    for suffix in ("_random_order", "_volume"):
+        if row.what.endswith(suffix):
+            return ["plain_loop" + suffix]
     of_stable_step = re.search(r"_\d+$", row.what)
     return ["plain_implicit_step" + of_stable_step[0] if of_stable_step else "plain_loop"]
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <springfit/step/detail/incremental_potential.hpp>
-#include <springfit/step/detail/renumbered_cells.hpp>
 #include <springfit/step/detail/spring_operator.hpp>
 
 namespace springfit {
@@ -73,7 +72,6 @@ private:
 
     ImplicitBodyOptions<Scalar> m_options;
     Operator m_operator;
-    SpringNetwork<Dim, Scalar> m_cells; ///< the cells alone, with the numbers inside
     Scalar m_length = 0;                ///< what the last direction was multiplied with
 };
 

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <springfit/network/volume.hpp>
 #include <springfit/step/detail/node_lanes.hpp>
 #include <springfit/step/detail/packed_springs.hpp>
-#include <springfit/step/detail/renumbered_cells.hpp>
 
 namespace springfit {
 
@@ -72,7 +70,6 @@ private:
 
     Packed m_springs;
     Execution m_execution;
-    SpringNetwork<Dim, Scalar> m_cells; ///< the cells alone, with the numbers inside
     std::vector<Scalar> m_inverse_mass;
     std::vector<Record> m_nodes;
     std::vector<Force> m_external; ///< external forces; in the last lane 1 / m, or 0 where clamped

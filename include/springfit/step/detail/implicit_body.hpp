@@ -15,7 +15,6 @@ ImplicitBody<Dim, ScalarType, LinearScalar>::ImplicitBody(
             options.linear_tolerance);
     require(options.max_linear_iterations > 0, "max_linear_iterations", "at least one", options.max_linear_iterations);
     require(options.tolerance > 0, "tolerance", "a positive tolerance", options.tolerance);
-    m_cells = detail::renumbered_cells(network, [&](int node) { return this->m_springs.number(node); });
     for (Index c = 0; c < network.n_cells(); ++c) {
         const detail::VolumeCell<Dim, Scalar> cell(network, c, network.rest_positions);
         const auto slopes = cell.gradient().colwise().norm().eval();
@@ -170,17 +169,17 @@ template <int Dim, std::floating_point ScalarType, std::floating_point LinearSca
 void ImplicitBody<Dim, ScalarType, LinearScalar>::add_cells(const typename Packed::Domain& domain,
                                                             typename Operator::Domain& target, bool exact) {
     for (std::size_t at = 0; at < domain.cells.size(); ++at) {
-        const Index c = domain.cells[at];
+        const auto& cell = domain.cells[at];
         auto& term = target.cells[at];
         SimplexCorners<Dim, Scalar> corners;
         for (int a = 0; a <= Dim; ++a) {
-            term.nodes[a] = m_cells.cells(a, c);
+            term.nodes[a] = cell.corners[a];
             corners.col(a) = this->vector(this->m_positions[static_cast<std::size_t>(term.nodes[a])]);
         }
-        const Scalar kappa = m_cells.volume_stiffness(c);
-        const Scalar pressure = kappa * (signed_volume<Dim, Scalar>(corners) / m_cells.rest_volume(c) - 1);
+        const Scalar kappa = cell.stiffness;
+        const Scalar pressure = kappa * (signed_volume<Dim, Scalar>(corners) * cell.inverse_volume - 1);
         const SimplexCorners<Dim, Scalar> gradient = volume_gradient<Dim, Scalar>(corners);
-        term.gradient = (std::sqrt(std::abs(kappa) / m_cells.rest_volume(c)) * gradient).template cast<LinearScalar>();
+        term.gradient = (std::sqrt(std::abs(kappa) * cell.inverse_volume) * gradient).template cast<LinearScalar>();
         term.corners = (corners.colwise() - corners.col(0).eval()).template cast<LinearScalar>();
         term.sign = kappa > 0 ? LinearScalar(1) : kappa < 0 && exact ? LinearScalar(-1) : LinearScalar(0);
         term.pressure = exact ? static_cast<LinearScalar>(pressure) : LinearScalar(0);

@@ -68,7 +68,21 @@ struct NodeLanes<3, Scalar> {
         split(sums, squares, rates);
     }
 
+    /// The volume that three edges from one corner span, 3! V, and its gradient by the end of each.
+    static Scalar volume(const Force* edges, Force* gradients) {
+        const Force turned[3] = {turn(edges[0]), turn(edges[1]), turn(edges[2])};
+        for (int a = 0; a < 3; ++a) {
+            const int b = (a + 1) % 3, c = (a + 2) % 3;
+            gradients[a] = turn(edges[b] * turned[c] - turned[b] * edges[c]);
+        }
+        const Force products = edges[0] * gradients[0];
+        return products[0] + products[1] + products[2];
+    }
+
 private:
+    /// (y z x -)
+    static Force turn(const Force& r) { return __builtin_shufflevector(r, r, 1, 2, 0, 3); }
+
     /// Half of the sums of two differences: (r_1 r_1, .) in pairs of lanes.
     static void add_products(const Record& a, const Record& b, Record& sums) {
         const Record x = __builtin_shufflevector(a, a, 0, 1, 2, 3, 0, 1, 2, 3) * a;
@@ -100,6 +114,15 @@ struct NodeLanes<2, Scalar> {
         add_products(d[2], d[3], last);
         squares = __builtin_shufflevector(first, last, 0, 1, 4, 5);
         rates = __builtin_shufflevector(first, last, 2, 3, 6, 7);
+    }
+
+    /// The area that two edges from one corner span, 2! V, and its gradient by the end of each.
+    static Scalar volume(const Force* edges, Force* gradients) {
+        const Force sign = {1, -1, 0, 0};
+        gradients[0] = sign * __builtin_shufflevector(edges[1], edges[1], 1, 0, 3, 2);
+        gradients[1] = -sign * __builtin_shufflevector(edges[0], edges[0], 1, 0, 3, 2);
+        const Force products = edges[0] * gradients[0];
+        return products[0] + products[1];
     }
 
 private:

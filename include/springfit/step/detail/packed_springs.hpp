@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
 
 #include <springfit/core/execution.hpp>
 #include <springfit/network/locality.hpp>
@@ -32,10 +33,17 @@ public:
         Scalar damping[lanes];   ///< c
     };
 
+    /// A cell that holds its volume.
+    struct Cell {
+        int corners[Dim + 1];
+        Scalar stiffness;      ///< kappa
+        Scalar inverse_volume; ///< 1 / V at rest
+    };
+
     struct Domain {
         int begin = 0, end = 0;           ///< its nodes
         std::vector<Block> inner, border; ///< springs within it, and from it to others
-        std::vector<int> cells;           ///< cells with a corner in it
+        std::vector<Cell> cells;          ///< cells with a corner in it
     };
 
     explicit PackedSprings(const SpringNetwork<Dim, Scalar>& network)
@@ -126,13 +134,22 @@ private:
         return result;
     }
 
+    /// A cell is stored with each domain that it has a corner in, each for its own corners; sorted by their lowest.
     void add_cells(const SpringNetwork<Dim, Scalar>& network) {
+        std::vector<std::pair<int, Index>> sorted; // lowest corner, cell
         for (Index c = 0; c < network.n_cells(); ++c) {
+            sorted.emplace_back(network.cells.col(c).unaryExpr([&](int node) { return number(node); }).minCoeff(), c);
+        }
+        std::sort(sorted.begin(), sorted.end());
+        for (const auto& [lowest, c] : sorted) {
+            Cell cell{{}, network.volume_stiffness(c), 1 / network.rest_volume(c)};
+            std::set<std::size_t> domains;
             for (int a = 0; a <= Dim; ++a) {
-                auto& cells = m_domains[domain_of(number(network.cells(a, c)))].cells;
-                if (cells.empty() || cells.back() != static_cast<int>(c)) {
-                    cells.push_back(static_cast<int>(c));
-                }
+                cell.corners[a] = number(network.cells(a, c));
+                domains.insert(domain_of(cell.corners[a]));
+            }
+            for (const std::size_t d : domains) {
+                m_domains[d].cells.push_back(cell);
             }
         }
     }

@@ -144,20 +144,41 @@ void SpringBatch<Dim, ScalarType>::advance(Index group, Scalar h) {
     }
 }
 
+/// The force on a corner is -kappa (V / V_0 - 1) dV/dx; those on all corners add up to 0.
 template <int Dim, std::floating_point ScalarType>
     requires SpatialDimension<Dim>
 void SpringBatch<Dim, ScalarType>::add_cell_forces(Index group) {
     for (Index c = 0; c < m_cells.n_cells(); ++c) {
-        for (int lane = 0; lane < lanes; ++lane) {
-            SimplexCorners<Dim, Scalar> corners;
-            for (int a = 0; a <= Dim; ++a) {
-                corners.col(a) = node(group, m_cells.cells(a, c)).position.row(lane).transpose();
+        const auto corner = [&](int a) -> Node& { return node(group, m_cells.cells(a, c)); };
+        Vectors edges[Dim], gradients[Dim];
+        for (int a = 0; a < Dim; ++a) {
+            edges[a] = corner(a + 1).position - corner(0).position;
+        }
+        Lanes volume = Lanes::Zero(); // Dim! of it, and its gradients
+        if constexpr (Dim == 2) {
+            gradients[0] << edges[1].col(1), -edges[1].col(0);
+            gradients[1] << -edges[0].col(1), edges[0].col(0);
+        } else {
+            for (int a = 0; a < Dim; ++a) {
+                const Vectors& b = edges[(a + 1) % 3];
+                const Vectors& e = edges[(a + 2) % 3];
+                for (int d = 0; d < Dim; ++d) {
+                    const int next = (d + 1) % 3, last = (d + 2) % 3;
+                    gradients[a].col(d) = b.col(next) * e.col(last) - b.col(last) * e.col(next);
+                }
             }
-            const Scalar dilation = signed_volume<Dim, Scalar>(corners) / m_cells.rest_volume(c) - 1;
-            const SimplexCorners<Dim, Scalar> forces =
-                (-m_cells.volume_stiffness(c) * dilation) * volume_gradient<Dim, Scalar>(corners);
-            for (int a = 0; a <= Dim; ++a) {
-                node(group, m_cells.cells(a, c)).force.row(lane) += forces.col(a).transpose().array();
+        }
+        for (int d = 0; d < Dim; ++d) {
+            volume += edges[0].col(d) * gradients[0].col(d);
+        }
+        constexpr Scalar factorial = Dim == 2 ? 2 : 6;
+        const Lanes pressure =
+            m_cells.volume_stiffness(c) / factorial * (1 - volume / (factorial * m_cells.rest_volume(c)));
+        for (int a = 0; a < Dim; ++a) {
+            for (int d = 0; d < Dim; ++d) {
+                const Lanes force = pressure * gradients[a].col(d);
+                corner(a + 1).force.col(d) += force;
+                corner(0).force.col(d) -= force;
             }
         }
     }

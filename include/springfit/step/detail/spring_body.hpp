@@ -21,7 +21,6 @@ SpringBody<Dim, ScalarType>::SpringBody(const SpringNetwork<Dim, Scalar>& networ
         m_inverse_mass[place] = 1 / network.mass(m_springs.order()[place]);
     }
     set_clamped({});
-    m_cells = detail::renumbered_cells(network, [&](int node) { return m_springs.number(node); });
     write(network.rest_positions, Points<Dim, Scalar>::Zero(Dim, network.n_nodes()));
 }
 
@@ -32,9 +31,10 @@ const {
     const std::size_t per_node = sizeof(Record) + 2 * sizeof(Force) + sizeof(Scalar) + 2 * sizeof(int);
     std::size_t total = m_nodes.size() * per_node;
     for (const auto& domain : m_springs.domains()) {
-        total += (domain.inner.size() + domain.border.size()) * sizeof(Block) + domain.cells.size() * sizeof(int);
+        total += (domain.inner.size() + domain.border.size()) * sizeof(Block) +
+                 domain.cells.size() * sizeof(typename Packed::Cell);
     }
-    return total + static_cast<std::size_t>(m_cells.n_cells()) * ((Dim + 1) * sizeof(int) + 2 * sizeof(Scalar));
+    return total;
 }
 
 template <int Dim, std::floating_point ScalarType>
@@ -212,28 +212,37 @@ void SpringBody<Dim, ScalarType>::add_spring_forces(const std::vector<Block>& bl
     }
 }
 
+/// The force on a corner is -kappa (V / V_0 - 1) dV/dx; those on all corners add up to 0.
 template <int Dim, std::floating_point ScalarType>
     requires SpatialDimension<Dim>
 void SpringBody<Dim, ScalarType>::add_cell_forces(const typename Packed::Domain& domain) {
-    for (int c : domain.cells) {
-        SimplexCorners<Dim, Scalar> corners;
-        for (int a = 0; a <= Dim; ++a) {
-            const auto& record = m_nodes[static_cast<std::size_t>(m_cells.cells(a, c))].lanes;
-            for (int d = 0; d < Dim; ++d) {
-                corners(d, a) = record[d];
-            }
+    using Lane = typename Lanes::Force;
+    constexpr Scalar share = Scalar(1) / (Dim == 2 ? 2 : 6); // of a simplex in the volume that its edges span
+    for (const typename Packed::Cell& cell : domain.cells) {
+        const auto position = [&](int corner) {
+            Lane result;
+            Lanes::vector(m_nodes[static_cast<std::size_t>(cell.corners[corner])].lanes, result);
+            return result;
+        };
+        const Lane origin = position(0);
+        Lane edges[Dim], gradients[Dim];
+        for (int a = 0; a < Dim; ++a) {
+            edges[a] = position(a + 1) - origin;
         }
-        const Scalar dilation = signed_volume<Dim, Scalar>(corners) / m_cells.rest_volume(c) - 1;
-        const SimplexCorners<Dim, Scalar> forces =
-            (-m_cells.volume_stiffness(c) * dilation) * volume_gradient<Dim, Scalar>(corners);
-        for (int a = 0; a <= Dim; ++a) {
-            const int node = m_cells.cells(a, c);
-            if (node >= domain.begin && node < domain.end) {
-                for (int d = 0; d < Dim; ++d) {
-                    m_forces[static_cast<std::size_t>(node)].lanes[d] += forces(d, a);
-                }
+        const Scalar volume = share * Lanes::volume(edges, gradients);
+        const Scalar pressure = share * cell.stiffness * (1 - volume * cell.inverse_volume);
+        const auto add = [&](int corner, const Lane& force) {
+            if (cell.corners[corner] >= domain.begin && cell.corners[corner] < domain.end) {
+                m_forces[static_cast<std::size_t>(cell.corners[corner])].lanes += force;
             }
+        };
+        Lane total = {};
+        for (int a = 0; a < Dim; ++a) {
+            const Lane force = pressure * gradients[a];
+            add(a + 1, force);
+            total += force;
         }
+        add(0, -total);
     }
 }
 
