@@ -9,8 +9,8 @@ namespace plain {
 
 template <int Dim, class Scalar>
 struct Body {
-    std::vector<Scalar> x, v, f, mass;        // Dim per node, one mass per node
-    std::vector<int> ends;                    // two per spring
+    std::vector<Scalar> x, v, f, mass; // Dim per node, one mass per node
+    std::vector<int> ends;             // two per spring
     std::vector<Scalar> k, rest_length, damping;
     std::vector<char> fixed;
     std::vector<int> corners; // Dim + 1 per cell

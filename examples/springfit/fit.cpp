@@ -71,7 +71,8 @@ void check(const FitOptions& options) {
     }
     require(!options.zeta || (*options.zeta >= 0 && std::isfinite(*options.zeta)), "--zeta", "a value not below 0",
             options.zeta.value_or(0));
-    require(!options.zeta || options.damping == "ratio", "--zeta", "--damping ratio beside it", "--damping " + options.damping);
+    require(!options.zeta || options.damping == "ratio", "--zeta", "--damping ratio beside it",
+            "--damping " + options.damping);
     if (!options.references.empty() || is_motion_file(options.input)) {
         const auto refuse = [](bool given, const char* name) {
             require(!given, name, "an FEM reference", "a recorded motion, for which it has no meaning");
@@ -111,8 +112,9 @@ void print_table(const std::vector<Candidate<Dim>>& candidates, std::size_t best
                     candidate.training, candidate.relative_stiffness, candidate.seconds,
                     c == best ? "   <- returned" : "");
     }
-    std::printf("(errors: |x - x_ref| / |x_ref - x_rest| over free nodes, frames and cases; stiffness: energy in the "
-                "reference's motion beside the first closed form)\n\n");
+    std::printf(
+        "(errors: |x - x_ref| / |x_ref - x_rest| over free nodes, frames and cases, inf where a network does not come "
+        "through a case;\nstiffness: energy in the reference's motion beside the first closed form)\n\n");
 }
 
 /// Writes the motion of the reference and of the network under the first held-out load case, as far as both go, and
@@ -147,9 +149,9 @@ void write_shown_motion(io::OutputGroup& outputs, const std::filesystem::path& f
 }
 
 template <int Dim>
-int fit_body(const AnyMesh& mesh, const std::optional<FineMesh>& fine_mesh,
-             std::vector<Motion<Dim, double>> recorded, std::vector<std::string> warnings, const FitOptions& options,
-             io::OutputFolder& folder, io::NamedNumbers stages) {
+int fit_body(const AnyMesh& mesh, const std::optional<FineMesh>& fine_mesh, std::vector<Motion<Dim, double>> recorded,
+             std::vector<std::string> warnings, const FitOptions& options, io::OutputFolder& folder,
+             io::NamedNumbers stages) {
     const auto since = [&stages](const Timer& timer, const char* name) { stages.emplace_back(name, timer.seconds()); };
     const Execution execution = parallel::tbb(options.threads);
     Discretisation<Dim> body = discretise<Dim>(mesh, options);
@@ -168,11 +170,9 @@ int fit_body(const AnyMesh& mesh, const std::optional<FineMesh>& fine_mesh,
             return split_recorded<Dim>(std::move(recorded), body, options);
         }
         const AnyMesh& reference_mesh = fine_mesh ? fine_mesh->mesh : mesh;
-        auto on_reference = record_cases<Dim>(*make_fem_reference<Dim>(reference_mesh, options),
-                                              body_of<Dim>(reference_mesh, options), body, options, execution,
-                                              [&](const std::vector<int>& clamped) {
-                                                  return !fine || fine->holds_network(clamped);
-                                              });
+        auto on_reference = record_cases<Dim>(
+            *make_fem_reference<Dim>(reference_mesh, options), body_of<Dim>(reference_mesh, options), body, options,
+            execution, [&](const std::vector<int>& clamped) { return !fine || fine->holds_network(clamped); });
         if (fine) {
             return fine->carried_to_network(std::move(on_reference));
         }
@@ -204,7 +204,8 @@ int fit_body(const AnyMesh& mesh, const std::optional<FineMesh>& fine_mesh,
     }
     for (const auto& candidate : candidates) {
         if (candidate.fit && candidate.relative_stiffness < 0.9) {
-            warnings.push_back(text(candidate.name, " came out softer than the closed form (", candidate.relative_stiffness,
+            warnings.push_back(text(candidate.name, " came out softer than the closed form (",
+                                    candidate.relative_stiffness,
                                     " of its stiffness): accelerations alone lose stiffness where springs cannot "
                                     "represent the material"));
         }
@@ -213,8 +214,8 @@ int fit_body(const AnyMesh& mesh, const std::optional<FineMesh>& fine_mesh,
                                     " values that no motion excites kept their prior"));
         }
         if (candidate.n_clamped > 0) {
-            warnings.push_back(text(candidate.name, ": ", candidate.n_clamped,
-                                    " springs would be negative and were set to 0"));
+            warnings.push_back(
+                text(candidate.name, ": ", candidate.n_clamped, " springs would be negative and were set to 0"));
         }
     }
     const Candidate<Dim>& chosen = candidates[best];
@@ -250,12 +251,14 @@ int fit_body(const AnyMesh& mesh, const std::optional<FineMesh>& fine_mesh,
         model.surface = fine->surface();
     }
     model.stable_time_step = stable_step(chosen.network, model.fixed);
-    model.provenance = {{"springfit", SPRINGFIT_VERSION_STRING}, {"method", chosen.name}, {"input", options.input},
-                        {"material", material_of<Dim>(options)},  {"seed", options.seed},  {"reference", cases.description}};
+    model.provenance = {
+        {"springfit", SPRINGFIT_VERSION_STRING}, {"method", chosen.name}, {"input", options.input},
+        {"material", material_of<Dim>(options)}, {"seed", options.seed},  {"reference", cases.description}};
 
     io::Report report;
     const bool early = cut_short || fit_interrupted || score_interrupted;
-    report.status = early ? Status::interrupted : chosen.fit        ? chosen.fit->status
+    report.status = early               ? Status::interrupted
+                    : chosen.fit        ? chosen.fit->status
                     : chosen.trajectory ? chosen.trajectory->status
                                         : Status::converged;
     report.method = chosen.name;

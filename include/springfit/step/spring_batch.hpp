@@ -3,8 +3,7 @@
 
 #include <springfit/core/execution.hpp>
 #include <springfit/network/locality.hpp>
-#include <springfit/network/volume.hpp>
-#include <springfit/step/detail/renumbered_cells.hpp>
+#include <springfit/step/detail/packed_cell.hpp>
 
 namespace springfit {
 
@@ -49,6 +48,8 @@ private:
     using Vectors = Eigen::Array<Scalar, lanes, Dim>;
     using Lanes = Eigen::Array<Scalar, lanes, 1>;
 
+    using Cell = detail::PackedCell<Dim, Scalar>;
+
     struct Node {
         Vectors position, velocity, force, external;
     };
@@ -74,7 +75,7 @@ private:
     std::vector<int> m_order, m_number;
     std::vector<int> m_first_spring; ///< per node, its entries of m_springs, those it is the lower end of
     std::vector<Spring> m_springs;
-    SpringNetwork<Dim, Scalar> m_cells;                     ///< the cells alone, with the numbers inside
+    std::vector<Cell> m_cells;
     std::vector<Scalar> m_own_inverse_mass, m_inverse_mass; ///< the latter 0 where clamped
     std::vector<Node> m_nodes;                              ///< group by group; forces are 0 between steps
 };

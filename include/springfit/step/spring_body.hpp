@@ -55,6 +55,7 @@ private:
     using Lanes = detail::NodeLanes<Dim, Scalar>;
     using Packed = detail::PackedSprings<Dim, Scalar>;
     using Block = typename Packed::Block;
+    using Cell = detail::PackedCell<Dim, Scalar>;
 
     // In structs, since a template argument cannot carry the vector attribute.
     struct Record {

@@ -6,7 +6,7 @@
 
 #include <springfit/core/execution.hpp>
 #include <springfit/network/locality.hpp>
-#include <springfit/network/spring_network.hpp>
+#include <springfit/step/detail/packed_cell.hpp>
 
 namespace springfit::detail {
 
@@ -33,17 +33,10 @@ public:
         Scalar damping[lanes];   ///< c
     };
 
-    /// A cell that holds its volume.
-    struct Cell {
-        int corners[Dim + 1];
-        Scalar stiffness;      ///< kappa
-        Scalar inverse_volume; ///< 1 / V at rest
-    };
-
     struct Domain {
-        int begin = 0, end = 0;           ///< its nodes
-        std::vector<Block> inner, border; ///< springs within it, and from it to others
-        std::vector<Cell> cells;          ///< cells with a corner in it
+        int begin = 0, end = 0;                     ///< its nodes
+        std::vector<Block> inner, border;           ///< springs within it, and from it to others
+        std::vector<PackedCell<Dim, Scalar>> cells; ///< with a corner in it
     };
 
     explicit PackedSprings(const SpringNetwork<Dim, Scalar>& network)
@@ -134,19 +127,12 @@ private:
         return result;
     }
 
-    /// A cell is stored with each domain that it has a corner in, each for its own corners; sorted by their lowest.
+    /// A cell is stored with each domain that it has a corner in, each for its own corners.
     void add_cells(const SpringNetwork<Dim, Scalar>& network) {
-        std::vector<std::pair<int, Index>> sorted; // lowest corner, cell
-        for (Index c = 0; c < network.n_cells(); ++c) {
-            sorted.emplace_back(network.cells.col(c).unaryExpr([&](int node) { return number(node); }).minCoeff(), c);
-        }
-        std::sort(sorted.begin(), sorted.end());
-        for (const auto& [lowest, c] : sorted) {
-            Cell cell{{}, network.volume_stiffness(c), 1 / network.rest_volume(c)};
+        for (const auto& cell : packed_cells(network, [&](int node) { return number(node); })) {
             std::set<std::size_t> domains;
-            for (int a = 0; a <= Dim; ++a) {
-                cell.corners[a] = number(network.cells(a, c));
-                domains.insert(domain_of(cell.corners[a]));
+            for (const int corner : cell.corners) {
+                domains.insert(domain_of(corner));
             }
             for (const std::size_t d : domains) {
                 m_domains[d].cells.push_back(cell);

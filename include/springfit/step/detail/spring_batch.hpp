@@ -35,7 +35,7 @@ SpringBatch<Dim, ScalarType>::SpringBatch(const SpringNetwork<Dim, Scalar>& netw
         m_springs.insert(m_springs.end(), own.begin(), own.end());
         m_first_spring.push_back(static_cast<int>(m_springs.size()));
     }
-    m_cells = detail::renumbered_cells(network, number);
+    m_cells = detail::packed_cells(network, number);
     const Vectors zero = Vectors::Zero();
     m_nodes.assign(static_cast<std::size_t>(Execution::n_chunks(n_bodies, lanes)) * n, {zero, zero, zero, zero});
     for (std::size_t i = 0; i < m_nodes.size(); ++i) {
@@ -148,39 +148,40 @@ void SpringBatch<Dim, ScalarType>::advance(Index group, Scalar h) {
 template <int Dim, std::floating_point ScalarType>
     requires SpatialDimension<Dim>
 void SpringBatch<Dim, ScalarType>::add_cell_forces(Index group) {
-    for (Index c = 0; c < m_cells.n_cells(); ++c) {
-        const auto corner = [&](int a) -> Node& { return node(group, m_cells.cells(a, c)); };
-        Vectors edges[Dim], gradients[Dim];
+    for (const Cell& cell : m_cells) {
+        Node& origin = node(group, cell.corners[0]);
+        Vectors edges[Dim];
         for (int a = 0; a < Dim; ++a) {
-            edges[a] = corner(a + 1).position - corner(0).position;
+            edges[a] = node(group, cell.corners[a + 1]).position - origin.position;
         }
-        Lanes volume = Lanes::Zero(); // Dim! of it, and its gradients
+        Vectors gradients[Dim]; // of the volume that the edges span, by their ends
         if constexpr (Dim == 2) {
             gradients[0] << edges[1].col(1), -edges[1].col(0);
             gradients[1] << -edges[0].col(1), edges[0].col(0);
         } else {
             for (int a = 0; a < Dim; ++a) {
                 const Vectors& b = edges[(a + 1) % 3];
-                const Vectors& e = edges[(a + 2) % 3];
-                for (int d = 0; d < Dim; ++d) {
-                    const int next = (d + 1) % 3, last = (d + 2) % 3;
-                    gradients[a].col(d) = b.col(next) * e.col(last) - b.col(last) * e.col(next);
-                }
+                const Vectors& c = edges[(a + 2) % 3];
+                gradients[a].col(0) = b.col(1) * c.col(2) - b.col(2) * c.col(1);
+                gradients[a].col(1) = b.col(2) * c.col(0) - b.col(0) * c.col(2);
+                gradients[a].col(2) = b.col(0) * c.col(1) - b.col(1) * c.col(0);
             }
         }
-        for (int d = 0; d < Dim; ++d) {
+        Lanes volume = edges[0].col(0) * gradients[0].col(0);
+        for (int d = 1; d < Dim; ++d) {
             volume += edges[0].col(d) * gradients[0].col(d);
         }
-        constexpr Scalar factorial = Dim == 2 ? 2 : 6;
-        const Lanes pressure =
-            m_cells.volume_stiffness(c) / factorial * (1 - volume / (factorial * m_cells.rest_volume(c)));
+        const Lanes pressure = Cell::share * cell.stiffness * (1 - Cell::share * cell.inverse_volume * volume);
+        Vectors opposite = Vectors::Zero();
         for (int a = 0; a < Dim; ++a) {
+            Node& corner = node(group, cell.corners[a + 1]);
             for (int d = 0; d < Dim; ++d) {
                 const Lanes force = pressure * gradients[a].col(d);
-                corner(a + 1).force.col(d) += force;
-                corner(0).force.col(d) -= force;
+                corner.force.col(d) += force;
+                opposite.col(d) += force;
             }
         }
+        origin.force -= opposite;
     }
 }
 

@@ -32,7 +32,7 @@ const {
     std::size_t total = m_nodes.size() * per_node;
     for (const auto& domain : m_springs.domains()) {
         total += (domain.inner.size() + domain.border.size()) * sizeof(Block) +
-                 domain.cells.size() * sizeof(typename Packed::Cell);
+                 domain.cells.size() * sizeof(Cell);
     }
     return total;
 }
@@ -217,8 +217,7 @@ template <int Dim, std::floating_point ScalarType>
     requires SpatialDimension<Dim>
 void SpringBody<Dim, ScalarType>::add_cell_forces(const typename Packed::Domain& domain) {
     using Lane = typename Lanes::Force;
-    constexpr Scalar share = Scalar(1) / (Dim == 2 ? 2 : 6); // of a simplex in the volume that its edges span
-    for (const typename Packed::Cell& cell : domain.cells) {
+    for (const Cell& cell : domain.cells) {
         const auto position = [&](int corner) {
             Lane result;
             Lanes::vector(m_nodes[static_cast<std::size_t>(cell.corners[corner])].lanes, result);
@@ -229,8 +228,8 @@ void SpringBody<Dim, ScalarType>::add_cell_forces(const typename Packed::Domain&
         for (int a = 0; a < Dim; ++a) {
             edges[a] = position(a + 1) - origin;
         }
-        const Scalar volume = share * Lanes::volume(edges, gradients);
-        const Scalar pressure = share * cell.stiffness * (1 - volume * cell.inverse_volume);
+        const Scalar volume = Cell::share * Lanes::volume(edges, gradients);
+        const Scalar pressure = Cell::share * cell.stiffness * (1 - volume * cell.inverse_volume);
         const auto add = [&](int corner, const Lane& force) {
             if (cell.corners[corner] >= domain.begin && cell.corners[corner] < domain.end) {
                 m_forces[static_cast<std::size_t>(cell.corners[corner])].lanes += force;
