@@ -225,6 +225,11 @@ int fit_body(const AnyMesh& mesh, const std::optional<FineMesh>& fine_mesh, std:
     }
     const bool score_interrupted = interrupted();
     since(scoring, "score");
+    if (!cut_short && !fit_interrupted && !score_interrupted && !(chosen.held_out < 0.25)) {
+        warnings.push_back(text("the returned network moves unlike the reference (held-out error ", chosen.held_out,
+                                "); cells that hold their volume (--volume), smaller motions (--strain, --deformation) "
+                                "or more --nodes may help"));
+    }
     print_table<Dim>(candidates, best);
     const io::NamedNumbers parts = held_out_parts<Dim>(chosen, cases.held_out);
     for (const auto& [part, error] : parts) {

@@ -67,6 +67,8 @@ assert abs(sum(model["nodes"]["mass"]) - 1000) < 1e-6
 baselines = report["held_out"]["baselines"]
 assert {"van_gelder", "dominant_term", "exact"} <= set(baselines)
 assert report["held_out"]["error"] == min(e for e in baselines.values() if e is not None)
+far_off = [w for w in report["warnings"] if "moves unlike the reference" in w]
+assert len(far_off) == (report["held_out"]["error"] >= 0.25), report["warnings"]
 assert report["method"] in baselines and set(report["training"]["baselines"]) == set(baselines)
 assert report["detail"]["seed"] == 3
 
