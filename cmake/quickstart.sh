@@ -2,7 +2,7 @@
 # All that a new user needs on a bare Debian 12:
 #   sh cmake/quickstart.sh demo    a real solid, from its surface to a calibrated mass-spring model in out/elephant/
 #   sh cmake/quickstart.sh test    build everything and run the tests
-#   sh cmake/quickstart.sh study   the accuracy study of methods, meshes and materials, into docs/results/ (an hour)
+#   sh cmake/quickstart.sh study   the accuracy study of methods, meshes and materials, into docs/results/ (half an hour)
 #   sh cmake/quickstart.sh performance   speed beside other programs, into docs/performance.md
 # All install the Debian packages that are missing; run again, they do only what is left to do.
 set -eu

@@ -19,6 +19,9 @@ import tempfile
 NAMES = {
     "plain_loop": "plain loop",
     "explicit_step": "springfit, explicit step",
+    "plain_loop_volume": "plain loop, springs and volume cells",
+    "explicit_step_volume": "springfit, explicit step, springs and volume cells",
+    "batch_step_volume": "springfit, explicit step of 64 bodies, springs and volume cells",
     "plain_loop_random_order": "plain loop, nodes and springs in random order",
     "explicit_step_random_order": "springfit, explicit step, random order",
     "explicit_step_two_threads": "springfit, explicit step, two threads",
@@ -252,7 +255,8 @@ def page_of_steps(runs):
         "## Time steps\n\nNanoseconds per spring and step, and in brackets the time over the plain loop's in the same run. "
         "`plain loop` is symplectic Euler as written in an hour (bench/speed/plain.hpp); explicit steps are half the stable "
         "step, implicit ones 30 or 100 stable steps, with the error against the converged step relative to its movement; those "
-        "beside peers are from a stretched state. MuJoCo's step is the same mathematics as ours "
+        "beside peers are from a stretched state. With volume cells, one per simplex (2 per node in the plane, 6 in space), "
+        "the time is still per spring. MuJoCo's step is the same mathematics as ours "
         "(three sliding joints per node, a tendon per spring). Bullet's soft body solves constraints on "
         "positions, one pass over them; its deformable body has one stiffness for all springs, and an implicit step is one "
         "linear solve, to a relative residual of about the root of the precision's epsilon, where ours is one to a "
