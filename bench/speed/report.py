@@ -21,7 +21,7 @@ NAMES = {
     "explicit_step": "springfit, explicit step",
     "plain_loop_volume": "plain loop, with volume cells",
     "explicit_step_volume": "springfit, explicit step, with volume cells",
-    "batch_step_volume": "springfit, explicit step of 64 bodies, with volume cells",
+    "batch_step_volume": "springfit, 64 bodies with volume cells",
     "plain_loop_random_order": "plain loop, nodes and springs in random order",
     "explicit_step_random_order": "springfit, explicit step, random order",
     "explicit_step_two_threads": "springfit, explicit step, two threads",
