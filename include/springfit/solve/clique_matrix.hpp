@@ -54,7 +54,9 @@ public:
             }
         }
         m_matrix.resize(Dim * n, Dim * n);
-        m_matrix.reserve(per_column);
+        if (n > 0) { // Eigen's makeCompressed would read beyond a matrix without columns
+            m_matrix.reserve(per_column);
+        }
         for (Index c = 0; c < n; ++c) {
             for (int d = 0; d < Dim; ++d) {
                 for (int row : below[static_cast<std::size_t>(c)]) {

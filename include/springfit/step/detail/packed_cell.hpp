@@ -35,8 +35,8 @@ template <int Dim, std::floating_point Scalar, class Number>
         cell.stiffness = network.volume_stiffness(c);
         cell.inverse_volume = 1 / network.rest_volume(c);
     }
-    std::stable_sort(cells.begin(), cells.end(),
-                     [](const auto& first, const auto& second) { return first.lowest() < second.lowest(); });
+    std::sort(cells.begin(), cells.end(),
+              [](const auto& first, const auto& second) { return first.lowest() < second.lowest(); });
     return cells;
 }
 
