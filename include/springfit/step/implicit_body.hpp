@@ -72,7 +72,7 @@ private:
 
     ImplicitBodyOptions<Scalar> m_options;
     Operator m_operator;
-    Scalar m_length = 0;                ///< what the last direction was multiplied with
+    Scalar m_length = 0; ///< what the last direction was multiplied with
 };
 
 } // namespace springfit

@@ -31,8 +31,7 @@ const {
     const std::size_t per_node = sizeof(Record) + 2 * sizeof(Force) + sizeof(Scalar) + 2 * sizeof(int);
     std::size_t total = m_nodes.size() * per_node;
     for (const auto& domain : m_springs.domains()) {
-        total += (domain.inner.size() + domain.border.size()) * sizeof(Block) +
-                 domain.cells.size() * sizeof(Cell);
+        total += (domain.inner.size() + domain.border.size()) * sizeof(Block) + domain.cells.size() * sizeof(Cell);
     }
     return total;
 }
