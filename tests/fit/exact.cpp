@@ -138,8 +138,9 @@ TEST_CASE("unknowns of their own: each is g / h, or the bound before it") {
     const FitProblem problem = box_problem(dense(h.asDiagonal(), g, 1e9), lower, upper, Values<double>::Ones(n));
     const FitReport report = exact(problem);
     CHECK(report.status == Status::converged);
+    const double scale = 5e6 / 1e3; // the largest |g| / sqrt(h)
     for (Index u = 0; u < n; ++u) {
-        CHECK(test::relative(report.theta(u), std::clamp(g(u) / h(u), -0.5, 4.), 1.) < 1e-9);
+        CHECK(std::sqrt(h(u)) * std::abs(report.theta(u) - std::clamp(g(u) / h(u), -0.5, 4.)) <= 1e-10 * scale);
     }
     CHECK(report.at_lower.size() == 2);
     CHECK(report.at_upper.size() == 3); // one of them with a multiplier of 0
@@ -259,7 +260,7 @@ TEST_CASE_TEMPLATE("two long waves tell springs apart badly, and still", T, test
     const FitReport report = exact(problem);
     CHECK(report.status == Status::converged);
     check_report(problem, report);
-    CHECK(report.products > 200);
+    CHECK(report.products > 100);
 }
 
 TEST_CASE("a string under its weight: conjugate gradients give way to Cholesky") {

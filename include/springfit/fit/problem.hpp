@@ -31,7 +31,7 @@ struct FitReport {
     double objective = 0;             ///< Phi(theta)
     std::vector<double> history;      ///< Phi after each sweep or iteration
     int iterations = 0;               ///< sweeps or iterations
-    int products = 0;                 ///< products with H, of `exact`
+    int products = 0;                 ///< products with H, or two sweeps over it, of `exact`
     int factorisations = 0;           ///< sparse factorisations of H, of `exact`; 0: conjugate gradients were enough
     double seconds = 0;               ///< wall clock of the solver
     double kkt_residual = 0;          ///< `kkt_residual(problem, theta)`

@@ -8,12 +8,13 @@
 
 #include <springfit/fit/detail/masked_cholesky.hpp>
 #include <springfit/fit/detail/node_product.hpp>
+#include <springfit/fit/detail/sweep_gradients.hpp>
 
 namespace springfit::detail {
 
 /// Moves some unknowns of a quadratic to where their gradient is 0, the others held, for one set of them after another.
 ///
-/// Conjugate gradients preconditioned by the diagonal; once sparse Cholesky is expected to take less work,
+/// Conjugate gradients preconditioned by symmetric Gauss-Seidel; once sparse Cholesky is expected to take less work,
 /// preconditioned by the factor of this set, or by that of an earlier one while the two differ little. What decides is
 /// a count of operations, not of seconds, so that results repeat.
 class FreeSolver {
@@ -23,14 +24,12 @@ public:
                std::function<bool()> go_on)
         : m_objective(objective), m_curvature(curvature), m_execution(execution), m_product(objective, execution),
           m_go_on(std::move(go_on)) {
-        double packed = 0;
-        for (Index i = 0; i < objective.n_terms(); ++i) {
-            const auto n = static_cast<double>(objective.term(i).size());
-            packed += n * (n + 1) / 2;
-        }
-        m_product_cost = product_slowness * (4 * packed + 30 * static_cast<double>(curvature.size()));
+        m_single.emplace(objective, curvature, execution);
+        m_iteration_cost = iteration_slowness * (4 * static_cast<double>(m_single->n_entries()) +
+                                                 30 * static_cast<double>(curvature.size()));
     }
 
+    /// Products with H; two sweeps, which look at its entries once, count as one.
     [[nodiscard]] int n_products() const { return m_n_products; }
     [[nodiscard]] int n_factorisations() const { return m_n_factorisations; }
     /// True once the factor is in use.
@@ -57,8 +56,8 @@ public:
     }
 
     /// Largest scaled gradient |g_u| / sqrt(H_uu) of the unknowns to move: `weight` is 1 / H_uu for them, 0 for others.
-    double largest(const Values<double>& weight, const Values<double>& gradient) {
-        return measure(weight, gradient).largest;
+    [[nodiscard]] static double largest(const Values<double>& weight, const Values<double>& gradient) {
+        return weight.size() == 0 ? 0. : std::sqrt((weight.array() * gradient.array().square()).maxCoeff());
     }
 
     /// Moves theta, and its whole gradient along, until `largest` is not above `target` or rounding prevents that;
@@ -67,8 +66,7 @@ public:
                Values<double>& gradient) {
         m_final = final;
         if (!m_direct) {
-            const Outcome outcome = conjugate_gradients<Preconditioner::diagonal>(weight, target, theta, gradient,
-                                                                                  std::numeric_limits<int>::max());
+            const Outcome outcome = by_sweeps(weight, target, theta, gradient);
             if (outcome != Outcome::slow) {
                 return outcome != Outcome::stopped;
             }
@@ -79,8 +77,7 @@ public:
         const Index changed = m_factorised.size() == 0 ? m_curvature.size()
                                                        : ((m_factorised.array() > 0) != (weight.array() > 0)).count();
         if (2 * changed <= worth) {
-            const Outcome outcome = conjugate_gradients<Preconditioner::factor>(weight, target, theta, gradient,
-                                                                                static_cast<int>(2 * changed + 3));
+            const Outcome outcome = by_factor(weight, target, theta, gradient, static_cast<int>(2 * changed + 3));
             if (outcome != Outcome::slow) {
                 return outcome != Outcome::stopped;
             }
@@ -91,19 +88,17 @@ public:
             return m_go_on();
         }
         m_factorised = weight;
-        return conjugate_gradients<Preconditioner::factor>(weight, target, theta, gradient, 30) != Outcome::stopped;
+        return by_factor(weight, target, theta, gradient, 30) != Outcome::stopped;
     }
 
 private:
     enum class Outcome { solved, slow, stopped };
-    enum class Preconditioner { diagonal, factor };
-    static constexpr Index unknowns_per_chunk = 2048;
     static constexpr Index most_factorised = 250000; ///< unknowns; in solids a factor has 1000 entries for each there
-    static constexpr int patience = 1000;   ///< iterations in all before a factorisation is thought of: its analysis
+    static constexpr int patience = 400;    ///< iterations in all before a factorisation is thought of: its analysis
                                             ///< takes about as long
     static constexpr double n_expected = 5; ///< factorisations until the end, once they begin
-    static constexpr double product_slowness =
-        0.25; ///< time of an operation in a product with H, that in a factorisation being 1
+    static constexpr double iteration_slowness =
+        0.5;                                      ///< time of an operation in a sweep, that in a factorisation being 1
     static constexpr double solve_slowness = 1.5; ///< the same in triangular solves
 
     [[nodiscard]] double factor_cost() const { return m_factor->flops(); }
@@ -115,96 +110,102 @@ private:
         if (spent < patience || iterations % 50 != 0 || m_curvature.size() > most_factorised) {
             return false;
         }
+        const double rate = std::log(std::max(reduced, 1.01)) / iterations;
+        const double to_come = std::max(std::log(std::max(largest_now / m_final, 10.)) / rate, 0.25 * spent);
+        if (to_come < patience) {
+            return false;
+        }
         if (!m_factor) {
             m_factor.emplace(m_objective, m_curvature);
         }
-        const double direct = n_expected * (factor_cost() + 10 * solve_cost());
-        const double rate = std::log(std::max(reduced, 1.01)) / iterations;
-        const double to_come = std::log(std::max(largest_now / m_final, 10.)) / rate;
-        return m_product_cost * std::max<double>(to_come, spent) > direct;
+        return m_iteration_cost * to_come > n_expected * (factor_cost() + 10 * solve_cost());
     }
 
-    /// Of the gradient where `weight` is not 0.
-    struct Size {
-        double square = 0;  ///< gradient' diag(weight) gradient
-        double largest = 0; ///< root of its largest term
-    };
-
-    /// Calls `body(begin, count)` for all chunks of unknowns and measures the gradient of each afterwards, while the
-    /// caches still hold it.
-    template <class Body>
-    Size measure_after(const Values<double>& weight, const Values<double>& gradient, const Body& body) {
-        const Index n = gradient.size();
-        m_terms.resize(n);
-        m_square.resize(Execution::n_chunks(n, unknowns_per_chunk));
-        m_largest.resize(m_square.size());
-        m_execution.for_chunks(n, unknowns_per_chunk, [&](Index chunk, Index begin, Index end) {
-            body(begin, end - begin);
-            auto terms = m_terms.segment(begin, end - begin).array();
-            terms = weight.segment(begin, end - begin).array() * gradient.segment(begin, end - begin).array().square();
-            m_square(chunk) = terms.sum();
-            m_largest(chunk) = terms.maxCoeff();
-        });
-        return n == 0 ? Size{} : Size{m_square.sum(), std::sqrt(m_largest.maxCoeff())};
-    }
-
-    Size measure(const Values<double>& weight, const Values<double>& gradient) {
-        return measure_after(weight, gradient, [](Index, Index) {});
-    }
-
-    /// m_direction = share * m_direction - M gradient, with the diagonal or the factor as M; returns gradient' M
-    /// gradient, which `share_of` is given before.
-    template <Preconditioner kind, class Share>
-    double turn(const Values<double>& weight, const Values<double>& gradient, double square, const Share& share_of) {
-        if constexpr (kind == Preconditioner::factor) {
-            m_preconditioned = (weight.array() > 0).select(gradient, 0.);
-            m_factor->solve(m_preconditioned, m_image);
-            m_preconditioned = (weight.array() > 0).select(m_image, 0.);
-            square = m_preconditioned.dot(gradient);
-        }
-        const double share = share_of(square);
-        m_execution.for_chunks(gradient.size(), unknowns_per_chunk, [&](Index, Index begin, Index end) {
-            auto direction = m_direction.segment(begin, end - begin).array();
-            if constexpr (kind == Preconditioner::factor) {
-                direction = share * direction - m_preconditioned.segment(begin, end - begin).array();
-            } else {
-                direction = share * direction -
-                            weight.segment(begin, end - begin).array() * gradient.segment(begin, end - begin).array();
+    /// In single precision as long as that makes the gradient smaller: with half the numbers to move a sweep takes half
+    /// the time, and the gradient that comes next is found in double precision.
+    Outcome by_sweeps(const Values<double>& weight, double target, Values<double>& theta, Values<double>& gradient) {
+        double size = largest(weight, gradient);
+        while (size > target) {
+            const Outcome outcome = m_double ? by_sweeps(*m_double, weight, size, target, theta, gradient)
+                                             : by_sweeps(*m_single, weight, size, target, theta, gradient);
+            if (outcome != Outcome::solved) {
+                return outcome;
             }
-        });
-        return square;
+            const double before = size;
+            size = largest(weight, gradient);
+            if (size > std::max(target, 0.5 * before)) {
+                if (m_double) {
+                    break; // rounding
+                }
+                m_single.reset();
+                m_double.emplace(m_objective, m_curvature, m_execution);
+            }
+        }
+        return Outcome::solved;
     }
 
-    template <Preconditioner kind>
-    Outcome conjugate_gradients(const Values<double>& weight, double target, Values<double>& theta,
-                                Values<double>& gradient, int max_iterations) {
-        Size size = measure(weight, gradient);
-        if (size.largest <= target) {
-            return Outcome::solved;
-        }
-        m_direction.setZero(theta.size());
-        double square = turn<kind>(weight, gradient, size.square, [](double) { return 0.; });
-        const double first = size.square;
-        double lowest = first;
-        for (int i = 0; size.largest > target && square > 0; ++i) {
-            if (i == max_iterations ||
-                (!m_direct && i > 0 && factor_is_quicker(i, std::sqrt(first / lowest), size.largest))) {
-                return Outcome::slow;
+    template <class Scalar>
+    Outcome by_sweeps(SweepGradients<Scalar>& gradients, const Values<double>& weight, double size, double target,
+                      Values<double>& theta, Values<double>& gradient) {
+        constexpr double accuracy = std::is_same_v<Scalar, float> ? 1e-4 : 1e-15;
+        gradients.start(weight, gradient, m_ridge, size);
+        Outcome outcome = Outcome::solved;
+        double lowest = 1;
+        for (int i = 0; gradients.largest() > std::max(0.9 * target / size, accuracy); ++i) {
+            if (i > 0 && factor_is_quicker(i, std::sqrt(1 / lowest), size * gradients.largest())) {
+                outcome = Outcome::slow;
+                break;
             }
             if (i % 64 == 63 && !m_go_on()) {
-                return Outcome::stopped;
+                outcome = Outcome::stopped;
+                break;
             }
-            const double curvature = multiply(m_direction, m_image);
-            if (!(curvature > 0) || size.square <= 1e-30 * first) {
+            ++m_n_products;
+            if (!gradients.iterate()) {
+                break;
+            }
+            lowest = std::min(lowest, gradients.square());
+        }
+        gradients.take_step(m_moved);
+        theta += m_moved;
+        multiply(m_moved, m_image);
+        gradient += m_image;
+        return outcome;
+    }
+
+    Outcome by_factor(const Values<double>& weight, double target, Values<double>& theta, Values<double>& gradient,
+                      int max_iterations) {
+        double size = largest(weight, gradient);
+        double square = 0;
+        double first = 0;
+        for (int i = 0; size > target; ++i) {
+            if (i == max_iterations) {
+                return Outcome::slow;
+            }
+            m_moved = (weight.array() > 0).select(gradient, 0.);
+            m_factor->solve(m_moved, m_preconditioned);
+            m_preconditioned = (weight.array() > 0).select(m_preconditioned, 0.);
+            const double before = square;
+            square = m_preconditioned.dot(gradient);
+            first = i == 0 ? square : first;
+            if (!(square > 1e-30 * first)) {
                 break; // rounding
             }
-            const double step = square / curvature;
-            size = measure_after(weight, gradient, [&](Index begin, Index count) {
-                theta.segment(begin, count) += step * m_direction.segment(begin, count);
-                gradient.segment(begin, count) += step * m_image.segment(begin, count);
-            });
-            lowest = std::min(lowest, size.square);
-            square = turn<kind>(weight, gradient, size.square, [&](double next) { return next / square; });
+            if (i == 0) {
+                m_direction = -m_preconditioned;
+            } else {
+                m_direction = square / before * m_direction - m_preconditioned;
+            }
+            const double curvature = multiply(m_direction, m_image);
+            if (!(curvature > 0)) {
+                break;
+            }
+            theta += square / curvature * m_direction;
+            gradient += square / curvature * m_image;
+            size = largest(weight, gradient);
+            if (!m_go_on()) {
+                return Outcome::stopped;
+            }
         }
         return Outcome::solved;
     }
@@ -214,7 +215,9 @@ private:
     Execution m_execution;
     NodeProduct m_product;
     std::function<bool()> m_go_on;
-    double m_product_cost = 0;
+    std::optional<SweepGradients<float>> m_single;
+    std::optional<SweepGradients<double>> m_double; ///< once the other is of no more use
+    double m_iteration_cost = 0;
     double m_final = 0;
     double m_ridge = 0;
     int m_n_products = 0;
@@ -223,8 +226,7 @@ private:
     bool m_direct = false;
     std::optional<MaskedCholesky> m_factor;
     Values<double> m_factorised; ///< the weight of the last factorisation
-    Values<double> m_direction, m_image, m_preconditioned, m_terms;
-    Values<double> m_square, m_largest; ///< by chunks of unknowns
+    Values<double> m_direction, m_image, m_preconditioned, m_moved, m_terms;
 };
 
 } // namespace springfit::detail
