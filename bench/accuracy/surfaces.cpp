@@ -36,7 +36,8 @@ void study_surfaces(Report& report, const Settings& settings) {
     ReferenceKind mean = locking;
     mean.mean_dilatation = true;
     const std::vector<Surface> surfaces = {{"elephant", 1}, {"fandisk", 0}, {"knot1", 0}, {"bear", 1}};
-    for (const auto& [name, axis] : surfaces) {
+    for (const Surface& surface : surfaces) {
+        const std::string& name = surface.name;
         const bool is_main = name == "elephant";
         if (settings.quick && !is_main) {
             break;
@@ -46,7 +47,7 @@ void study_surfaces(Report& report, const Settings& settings) {
             report.note(name + ": left out, no solid mesh.");
             continue;
         }
-        const auto body = body_of(*mesh, axis, 0.05);
+        const auto body = body_of(*mesh, surface.axis, 0.05);
         const auto rows_of = [&](double strain, int training, const ReferenceKind& reference,
                                  const std::vector<NetworkKind>& networks) {
             CaseSettings cases;

@@ -109,7 +109,7 @@ TEST_CASE("islands in holes, several areas and inner segments come out as drawn"
     wall.segments << 0, 1, 5, 2, 3, 4, 4, 1, 5, 2, 3, 4, 0, 5;
     const auto halves = cgal::triangulate<double>(wall, {.cell_size = 0.2});
     for (Index c = 0; c < halves.n_cells(); ++c) {
-        const auto y = halves.cell_nodes(c).row(1);
+        const auto y = halves.cell_nodes(c).row(1).eval();
         CHECK((y.maxCoeff() <= 0.5 || y.minCoeff() >= 0.5));
     }
     wall.holes.resize(2, 1);

@@ -250,13 +250,13 @@ TEST_CASE_TEMPLATE("where springs cannot represent the material, fifty sweeps co
             std::string name;
             Motion<dim, double> motion;
         };
-        for (const auto& [name, motion] :
+        for (const Data& data :
              {Data{"noise", test::linear_motion<dim>(network, stiffness, noise)},
               Data{"smooth", test::linear_motion<dim>(network, stiffness, smooth)},
               Data{"vibration", test::vibration<dim>(network, stiffness, 100, 1e-3, random)}}) {
             CAPTURE(poisson);
-            CAPTURE(name);
-            const FitProblem problem = acceleration_problem<dim, double>(network, {motion});
+            CAPTURE(data.name);
+            const FitProblem problem = acceleration_problem<dim, double>(network, {data.motion});
             const FitReport exact = ipopt::exact(problem);
             CHECK(exact.status == Status::converged);
             CHECK(exact.objective > 0);

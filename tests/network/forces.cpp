@@ -97,7 +97,10 @@ TEST_CASE_TEMPLATE("elastic forces are minus the gradient of the energy", T, tes
 
 TEST_CASE_TEMPLATE("the Hessian is the derivative of the forces", T, test::Space<2, double>, test::Space<3, double>) {
     constexpr int dim = T::dimension;
-    auto [network, x, v] = example<dim, double>();
+    const auto given = example<dim, double>();
+    const auto& network = given.network;
+    const auto& x = given.positions;
+    const auto& v = given.velocities;
     const FreeNodes free(network.n_nodes(), {1, 4});
     auto stiffness = spring_matrix(network, free);
     add_stiffness<dim, double>(network, x, Curvature::exact, stiffness);
