@@ -5,11 +5,12 @@
 
 #define EIGEN_RUNTIME_NO_MALLOC // Eigen then aborts on an allocation where it is told so
 
+#include <atomic>
 #include <cstdlib>
 #include <new>
 
 namespace springfit::test {
-inline long n_allocations = 0;
+inline std::atomic<long> n_allocations = 0;
 }
 
 [[gnu::noinline]] void* operator new(std::size_t size) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fit_data.hpp"
+#include "threads.hpp"
 
 #include <numeric>
 
@@ -142,13 +143,8 @@ TEST_CASE_TEMPLATE("frame by frame is the same as a motion, on any number of thr
     AccelerationOptions<Scalar> options;
     options.parameters.damping.fit = true;
     // An execution that runs the chunks in the opposite order, as threads might.
-    const Execution backwards([](Index n, const Execution::Chunk& chunk) {
-        while (n-- > 0) {
-            chunk(n);
-        }
-    });
     AccelerationObjective<dim, Scalar> whole(body.network, options);
-    AccelerationObjective<dim, Scalar> frames(body.network, options, backwards);
+    AccelerationObjective<dim, Scalar> frames(body.network, options, test::backwards_on_threads());
     whole.add(motion);
     for (std::size_t t = 0; t < motion.times.size(); ++t) {
         frames.add_frame(motion.positions[t], motion.velocities[t], motion.accelerations[t], motion.external_forces[t],
@@ -158,7 +154,7 @@ TEST_CASE_TEMPLATE("frame by frame is the same as a motion, on any number of thr
     const FitProblem b = frames.problem();
     CHECK(a.objective.linear() == b.objective.linear());
     CHECK((a.objective.hessian() - b.objective.hessian()).norm() == 0);
-    CHECK(one_pass(a).theta == one_pass(b, {.execution = backwards}).theta);
+    CHECK(one_pass(a).theta == one_pass(b, {.execution = test::backwards_on_threads()}).theta);
     // More frames may follow.
     whole.add(motion);
     CHECK(test::relative_difference(whole.problem().objective.linear(), 2 * a.objective.linear()) < 1e-13);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "threads.hpp"
 #include "tolerance.hpp"
 
 #include <springfit/fem/statics.hpp>
@@ -66,11 +67,6 @@ std::vector<Scenario<Dim, double>> pushes(const Points<Dim, double>& rest, doubl
     return cases;
 }
 
-const Execution backwards([](Index n, const Execution::Chunk& body) {
-    for (Index c = n; c-- > 0;) {
-        body(c);
-    }
-});
 
 } // namespace
 
@@ -157,7 +153,7 @@ TEST_CASE_TEMPLATE("many static cases under several clamps are those of one at a
         const auto& rest = model.rest_positions();
         const auto cases = pushes<dim>(rest, force);
         const auto recordings = record_statics(model, cases);
-        const auto again = record_statics(model, cases, {.execution = backwards});
+        const auto again = record_statics(model, cases, {.execution = test::backwards_on_threads()});
         const auto responses = linear_responses(model, cases);
         for (std::size_t c = 0; c < cases.size(); ++c) {
             const auto& [motion, status] = recordings[c];

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "threads.hpp"
 #include "tolerance.hpp"
 
 #include <springfit/motion/record_static.hpp>
@@ -99,12 +100,8 @@ TEST_CASE_TEMPLATE("a network has no error against itself and a plain one where 
     const auto by_motion = motion_error<dim, Scalar>({dynamic.motion}, {set.references[0]});
     CHECK(test::relative(by_motion.error, different.case_errors[0], different.error) < 1e-12);
     // Cases in any order, on any execution.
-    const Execution backwards([](Index n, const Execution::Chunk& body) {
-        for (Index c = n; c-- > 0;) {
-            body(c);
-        }
-    });
-    const auto again = motion_error(softer, set.scenarios, set.references, {}, {.execution = backwards});
+    const auto again =
+        motion_error(softer, set.scenarios, set.references, {}, {.execution = test::backwards_on_threads()});
     CHECK(again.error == different.error);
 }
 

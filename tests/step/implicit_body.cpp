@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "allocations.hpp"
 
+#include "threads.hpp"
 #include "tolerance.hpp"
 
 #include <Eigen/Dense>
@@ -140,15 +141,10 @@ TEST_CASE_TEMPLATE("domains change neither the implicit step nor its bits", T, S
     REQUIRE(detail::PackedSprings<dim, Scalar>(network).domains().size() > 1);
     const auto thrown = test::thrown<dim, Scalar>(network, Scalar(0.01));
     const Scalar h = 5 * stable_step(network);
-    const Execution backwards([](Index n, const Execution::Chunk& body) {
-        for (Index c = n; c-- > 0;) {
-            body(c);
-        }
-    });
     Points<dim, Scalar> x[2], v[2];
     for (int run = 0; run < 2; ++run) {
         ImplicitBody<dim, Scalar> body(network, {.max_iterations = 30, .tolerance = Scalar(1e-6)},
-                                       run == 0 ? Execution() : backwards);
+                                       run == 0 ? Execution() : test::backwards_on_threads());
         body.write(thrown.initial_positions, thrown.initial_velocities);
         body.set_clamped({5});
         CHECK(body.step(h).status == Status::converged);

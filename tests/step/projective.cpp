@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "allocations.hpp"
 
+#include "threads.hpp"
 #include "tolerance.hpp"
 
 #include <springfit/motion/record.hpp>
@@ -114,14 +115,10 @@ TEST_CASE_TEMPLATE("domains change neither the projective step nor its bits, and
     const auto network = test::random_network<dim, Scalar>(Scalar(0.01), dim == 2 ? 150 : 26);
     const auto thrown = test::thrown<dim, Scalar>(network, Scalar(0.01));
     const Scalar h = 5 * stable_step(network);
-    const Execution backwards([](Index n, const Execution::Chunk& body) {
-        for (Index c = n; c-- > 0;) {
-            body(c);
-        }
-    });
     Points<dim, Scalar> x[2], v[2];
     for (int run = 0; run < 2; ++run) {
-        ProjectiveBody<dim, Scalar> body(network, {.max_iterations = 3}, run == 0 ? Execution() : backwards);
+        ProjectiveBody<dim, Scalar> body(network, {.max_iterations = 3},
+                                         run == 0 ? Execution() : test::backwards_on_threads());
         body.set_clamped({5});
         body.write(thrown.initial_positions, thrown.initial_velocities);
         (void)body.step(h);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "allocations.hpp"
 
+#include "threads.hpp"
 #include "tolerance.hpp"
 
 #include <springfit/step/spring_batch.hpp>
@@ -72,13 +73,8 @@ TEST_CASE_TEMPLATE("a body's bits depend neither on the threads nor on its neigh
     using Scalar = typename T::Scalar;
     const auto network = test::random_network_with_cells<dim, Scalar>(Scalar(0.01), -10, 100);
     const Scalar h = stable_step(network) / 4;
-    const Execution backwards([](Index n, const Execution::Chunk& body) {
-        for (Index c = n; c-- > 0;) {
-            body(c);
-        }
-    });
     const auto many = moved<dim, Scalar>(network, 20, h, 10);
-    const auto again = moved<dim, Scalar>(network, 20, h, 10, backwards);
+    const auto again = moved<dim, Scalar>(network, 20, h, 10, test::backwards_on_threads());
     const auto few = moved<dim, Scalar>(network, 3, h, 10);
     Points<dim, Scalar> x, v, y, w;
     many.read(17, x, v);

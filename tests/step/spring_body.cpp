@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "threads.hpp"
 #include "tolerance.hpp"
 
 #include <numeric>
@@ -95,12 +96,7 @@ TEST_CASE_TEMPLATE("domains change neither the motion nor its bits", T, SPRINGFI
     const auto expected = by_definition<dim, Scalar>(network, {5}, h, 3);
     const auto found = by_body<dim, Scalar>(network, {5}, h, 3);
     CHECK((found.x - expected.x).cwiseAbs().maxCoeff() < test::rounding<Scalar>(200));
-    const Execution backwards([](Index n, const Execution::Chunk& body) {
-        for (Index c = n; c-- > 0;) {
-            body(c);
-        }
-    });
-    const auto again = by_body<dim, Scalar>(network, {5}, h, 3, backwards);
+    const auto again = by_body<dim, Scalar>(network, {5}, h, 3, test::backwards_on_threads());
     CHECK(again.x == found.x);
     CHECK(again.v == found.v);
 }
