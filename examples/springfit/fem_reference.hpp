@@ -37,7 +37,9 @@ public:
         SymmetricSolver<double> solver;
         const auto stiffness = model.stiffness(model.rest_positions(), free);
         require(solver.factorise(stiffness) && solver.shift() == 0, "--clamp",
-                "clamps that keep the body from moving freely", "a body that can still move as a whole");
+                "sides that keep the body from moving as a whole: a deeper one (y-min:0.1; y-min alone, without the option, "
+                "is 0.05 deep) or a finer mesh (--nodes) has more nodes",
+                text("one that still can, with ", m_corner_mesh.n_nodes() - free.n_free(), " nodes held"));
         std::vector<LinearResponse> responses;
         for (const Scenario& scenario : scenarios) {
             const Points<Dim, double> forces = external_forces(scenario, model.masses(), 0.);
