@@ -23,11 +23,7 @@ public:
     FreeSolver(const NodeQuadratic& objective, const Values<double>& curvature, const Execution& execution,
                std::function<bool()> go_on)
         : m_objective(objective), m_curvature(curvature), m_execution(execution), m_product(objective, execution),
-          m_go_on(std::move(go_on)) {
-        m_single.emplace(objective, curvature, execution);
-        m_iteration_cost = iteration_slowness * (4 * static_cast<double>(m_single->n_entries()) +
-                                                 30 * static_cast<double>(curvature.size()));
-    }
+          m_go_on(std::move(go_on)) {}
 
     /// Products with H; two sweeps, which look at its entries once, count as one.
     [[nodiscard]] int n_products() const { return m_n_products; }
@@ -125,6 +121,11 @@ private:
     /// the time, and the gradient that comes next is found in double precision.
     Outcome by_sweeps(const Values<double>& weight, double target, Values<double>& theta, Values<double>& gradient) {
         double size = largest(weight, gradient);
+        if (size > target && !m_single && !m_double) {
+            m_single.emplace(m_objective, m_curvature, m_execution);
+            m_iteration_cost = iteration_slowness * (4 * static_cast<double>(m_single->n_entries()) +
+                                                     30 * static_cast<double>(m_curvature.size()));
+        }
         while (size > target) {
             const Outcome outcome = m_double ? by_sweeps(*m_double, weight, size, target, theta, gradient)
                                              : by_sweeps(*m_single, weight, size, target, theta, gradient);
@@ -133,7 +134,7 @@ private:
             }
             const double before = size;
             size = largest(weight, gradient);
-            if (size > std::max(target, 0.5 * before)) {
+            if (size > std::max(target, 0.8 * before)) { // at most half of it was aimed at
                 if (m_double) {
                     break; // rounding
                 }
@@ -151,7 +152,8 @@ private:
         gradients.start(weight, gradient, m_ridge, size);
         Outcome outcome = Outcome::solved;
         double lowest = 1;
-        for (int i = 0; gradients.largest() > std::max(0.9 * target / size, accuracy); ++i) {
+        const double goal = std::max(std::min(0.9 * target / size, 0.5), accuracy);
+        for (int i = 0; gradients.largest() > goal; ++i) {
             if (i > 0 && factor_is_quicker(i, std::sqrt(1 / lowest), size * gradients.largest())) {
                 outcome = Outcome::slow;
                 break;
