@@ -17,9 +17,9 @@ namespace springfit::detail {
 ///
 /// Unknowns have places of their own here: by colour first, two that share a term never having the same, and by
 /// locality within one. The rows of a colour do not depend on each other, so they are worked on by lanes and by
-/// threads, and the bits do not depend on how many threads there are. Vectors are `[size()]` by place and finite; places
-/// that no unknown has, and unknowns that are not free, are 0 in solutions. Memory: an index and a number, twice, for
-/// each two unknowns that share a term.
+/// threads, and the bits do not depend on how many threads there are. Vectors are `[size()]` by place and finite;
+/// places that no unknown has, and unknowns that are not free, are 0 in solutions. Memory: an index and a number,
+/// twice, for each two unknowns that share a term.
 template <std::floating_point Scalar>
 class SymmetricGaussSeidel {
 public:
