@@ -20,9 +20,9 @@ struct Series {
 };
 
 struct Chart {
-    std::string title;
-    std::string x_label;
-    std::string y_label;
+    std::string title{};
+    std::string x_label{};
+    std::string y_label{};
     bool log_x = false;
     bool log_y = false;
     std::vector<std::string> groups{}; ///< of bars alone

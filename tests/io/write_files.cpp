@@ -27,12 +27,12 @@ void write(const std::filesystem::path& folder, const std::string& name, const M
                                   &fitted);
 
     io::Model<Dim, Scalar> model;
-    model.network = {mesh.nodes,
-                     springs,
-                     Values<Scalar>{{Scalar(1) / 3, 0, Scalar(1e20)}},
-                     Values<Scalar>{{1, Scalar(0.1), 2}},
-                     Values<Scalar>{{0, Scalar(2) / 7, 1}},
-                     Values<Scalar>::Constant(mesh.n_nodes(), Scalar(1) / 9)};
+    model.network.rest_positions = mesh.nodes;
+    model.network.springs = springs;
+    model.network.stiffness = Values<Scalar>{{Scalar(1) / 3, 0, Scalar(1e20)}};
+    model.network.rest_length = Values<Scalar>{{1, Scalar(0.1), 2}};
+    model.network.damping = Values<Scalar>{{0, Scalar(2) / 7, 1}};
+    model.network.mass = Values<Scalar>::Constant(mesh.n_nodes(), Scalar(1) / 9);
     model.fixed = {0, 2};
     model.stable_time_step = Scalar(1) / 1234;
     model.provenance = {{"springfit", "0.1.0"}, {"material", {{"young", 5e4}}}};

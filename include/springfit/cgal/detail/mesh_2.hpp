@@ -11,9 +11,9 @@
 #include <CGAL/Delaunay_mesh_size_criteria_2.h>
 #include <CGAL/Delaunay_mesh_vertex_base_2.h>
 #include <CGAL/Delaunay_mesher_2.h>
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/box_intersection_d.h>
 
+#include <springfit/cgal/detail/kernel.hpp>
 #include <springfit/core/error.hpp>
 #include <springfit/mesh/mesh.hpp>
 
@@ -21,15 +21,12 @@ namespace springfit::cgal::detail {
 
 /// Points and the segments between them, each once; the segments meet at their ends only.
 struct PlaneGraph {
-    using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-
     std::vector<Kernel::Point_2> points;
     std::vector<std::array<int, 2>> segments;
 };
 
 /// Pairs of segments that cross, touch between their ends, or overlap. O(n log n) as a rule.
 inline Index count_crossings(const PlaneGraph& graph) {
-    using Kernel = PlaneGraph::Kernel;
     using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 2, int>;
     std::vector<Box> boxes;
     for (std::size_t s = 0; s < graph.segments.size(); ++s) {
@@ -64,7 +61,6 @@ inline Index count_crossings(const PlaneGraph& graph) {
 /// The plane cut by a graph's segments into regions, and Delaunay refinement of those that are to be meshed.
 class PlaneMesher {
 public:
-    using Kernel = PlaneGraph::Kernel;
     using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<
         Kernel, CGAL::Triangulation_data_structure_2<CGAL::Delaunay_mesh_vertex_base_2<Kernel>,
                                                      CGAL::Delaunay_mesh_face_base_2<Kernel>>>;
@@ -195,7 +191,7 @@ inline Index count_nodes(const PlaneMesher::Triangulation& triangulation) {
 template <std::floating_point Scalar>
 [[nodiscard]] Mesh<2, Scalar, Tri3> to_mesh(const PlaneMesher::Triangulation& triangulation) {
     std::unordered_map<const void*, int> number;
-    std::vector<PlaneGraph::Kernel::Point_2> points;
+    std::vector<Kernel::Point_2> points;
     std::vector<std::array<int, 3>> cells;
     for (const auto face : triangulation.finite_face_handles()) {
         if (face->is_in_domain()) {

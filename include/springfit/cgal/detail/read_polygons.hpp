@@ -4,14 +4,12 @@
 #include <array>
 #include <cstdint>
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/IO/polygon_soup_io.h>
 
+#include <springfit/cgal/detail/kernel.hpp>
 #include <springfit/cgal/detail/text_file.hpp>
 
 namespace springfit::cgal::detail {
-
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 /// Polygons over shared points, as a file holds them: in any orientation, perhaps with points given twice.
 struct PolygonSoup {
