@@ -9,7 +9,9 @@ int main() {
     using namespace springfit;
     auto mesh = triangle_grid<double>({12, 4}, {0.3, 0.1}); // a sheet, m
     jitter(mesh, 0.2, 1);
-    const fem::Model reference{mesh, fem::StVenantKirchhoff{.young = 1e5, .poisson = 1. / 3.}, 1000.,
+    const fem::Model reference{mesh,
+                               fem::StVenantKirchhoff{.young = 1e5, .poisson = 1. / 3.},
+                               1000.,
                                {.thickness = 0.01, .stiffness_damping = 1e-3}};
 
     Scenario<2, double> scenario;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Counts allocations. Included before any other header, by one file of a program, since it replaces operator new. Counts
-// none under Clang's thread sanitizer, which replaces it too.
+// Counts allocations. Included before any other header, by one file of a program, since it replaces operator new.
+// Counts none under Clang's thread sanitizer, which replaces it too.
 
 #define EIGEN_RUNTIME_NO_MALLOC // Eigen then aborts on an allocation where it is told so
 

@@ -178,7 +178,8 @@ void study_dynamics(Report& report, const Settings& settings) {
         "A box of tetrahedra, nu = 0.3, let go of at rest under a load, over five periods of its slowest "
         "vibration. The reference has stiffness-proportional damping, 3 % of critical at the slowest vibration; the "
         "networks' damping follows their stiffness with the same factor. Networks are fitted to static cases "
-        "and to eight swings of a period and a half after other releases; their motion is stepped from the reference's start. Errors are those of all positions over all "
+        "and to eight swings of a period and a half after other releases; their motion is stepped from the reference's "
+        "start. Errors are those of all positions over all "
         "frames: a small error of a frequency adds up over the periods. The linear material is let go of at "
         "small strain, neo-Hookean at 5 %.");
     Frequencies frequencies;

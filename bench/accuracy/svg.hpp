@@ -119,7 +119,7 @@ inline std::string tick_text(double value) {
 }
 
 /// Lowest and highest of the finite values (on a logarithmic axis, of the positive ones).
-inline std::array<double, 2> range(const Chart& chart, std::vector<double> Series::*values, bool is_log) {
+inline std::array<double, 2> range(const Chart& chart, std::vector<double> Series::* values, bool is_log) {
     std::array<double, 2> result{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
     for (const auto& series : chart.series) {
         for (double value : series.*values) {

@@ -56,7 +56,9 @@ template <int Dim, class Scalar>
 template <int Dim, class Scalar>
 [[nodiscard]] plain::Body<Dim, Scalar> plain_body(const springfit::SpringNetwork<Dim, Scalar>& network) {
     plain::Body<Dim, Scalar> body;
-    const auto copy = [](auto& target, const auto& source) { target.assign(source.data(), source.data() + source.size()); };
+    const auto copy = [](auto& target, const auto& source) {
+        target.assign(source.data(), source.data() + source.size());
+    };
     copy(body.x, network.rest_positions);
     body.v.assign(body.x.size(), 0);
     body.f.assign(body.x.size(), 0);

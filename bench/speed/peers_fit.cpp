@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The bounded quadratic of the acceleration fit, assembled from 200 frames so noisy that an eighth of the springs end on
-// their bound, solved by springfit, by a plain solver and by other programs that are installed. Each begins at the prior and
-// is to reach a residual of 1e-9; `kkt` is what it reached.
+// The bounded quadratic of the acceleration fit, assembled from 200 frames so noisy that an eighth of the springs end
+// on their bound, solved by springfit, by a plain solver and by other programs that are installed. Each begins at the
+// prior and is to reach a residual of 1e-9; `kkt` is what it reached.
 
 #include <map>
 #include <memory>
@@ -95,8 +95,7 @@ void add_size(Index springs) {
     add("plain_exact", springs, plain_exact);
 #ifdef SPRINGFIT_BENCH_IPOPT
     if (springs <= 10000) {
-        add("ipopt", springs,
-            [](const Data& d) { return bench::peers::Solution{ipopt::exact(d.problem).theta}; });
+        add("ipopt", springs, [](const Data& d) { return bench::peers::Solution{ipopt::exact(d.problem).theta}; });
     }
 #endif
 #ifdef SPRINGFIT_BENCH_PETSC

@@ -22,7 +22,8 @@ struct NormalEquations {
     std::vector<std::vector<double>> block;   // per node, dense
     std::vector<double> gradient;             // per spring
 
-    NormalEquations(const springfit::SpringNetwork<Dim, Scalar>& network, const springfit::Motion<Dim, Scalar>& motion) {
+    NormalEquations(const springfit::SpringNetwork<Dim, Scalar>& network,
+                    const springfit::Motion<Dim, Scalar>& motion) {
         const auto n_nodes = static_cast<std::size_t>(network.n_nodes());
         springs_at.resize(n_nodes);
         block.resize(n_nodes);

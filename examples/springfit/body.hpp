@@ -16,10 +16,9 @@
 namespace program {
 
 /// A mesh of any kind of cell that the program reads or makes.
-using AnyMesh =
-    std::variant<springfit::Mesh<2, double, springfit::Tri3>, springfit::Mesh<2, double, springfit::Quad4>,
-                 springfit::Mesh<3, double, springfit::Tet4>, springfit::Mesh<3, double, springfit::Hex8>,
-                 springfit::Mesh<3, double, springfit::Tri3>>;
+using AnyMesh = std::variant<springfit::Mesh<2, double, springfit::Tri3>, springfit::Mesh<2, double, springfit::Quad4>,
+                             springfit::Mesh<3, double, springfit::Tet4>, springfit::Mesh<3, double, springfit::Hex8>,
+                             springfit::Mesh<3, double, springfit::Tri3>>;
 
 [[nodiscard]] int dimension_of(const AnyMesh& mesh);
 
@@ -52,7 +51,7 @@ struct Discretisation {
     std::vector<springfit::NamedClosedForm<double>> closed_forms; ///< all that hold for these cells, at least one
     /// Springs together with cells that hold their volume, of `--volume` on simplices.
     std::optional<springfit::CauchySplit<double>> cauchy_split;
-    springfit::io::MotionTopology topology;        ///< cells and springs, for the motion files
+    springfit::io::MotionTopology topology; ///< cells and springs, for the motion files
     std::string cell_name;
 };
 

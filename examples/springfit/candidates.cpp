@@ -180,7 +180,8 @@ void score(std::vector<Candidate<Dim>>& candidates, const ReferenceCases<Dim>& c
     const std::size_t parts = 2 * candidates.size();
     std::size_t part = 0;
     const auto error_of = [&](const SpringNetwork<Dim, double>& network, const CaseSet<Dim>& set) {
-        auto found = motion_error(network, set.scenarios, set.motions, stage.callback(part++, parts), scoring(execution));
+        auto found =
+            motion_error(network, set.scenarios, set.motions, stage.callback(part++, parts), scoring(execution));
         if (interrupted()) {
             found.error = std::numeric_limits<double>::infinity();
         }

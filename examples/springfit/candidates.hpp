@@ -17,17 +17,17 @@ template <int Dim>
 struct Candidate {
     std::string name;
     springfit::SpringNetwork<Dim, double> network;
-    std::optional<springfit::FitReport> fit; ///< empty for a closed form
+    std::optional<springfit::FitReport> fit;               ///< empty for a closed form
     std::optional<springfit::TrajectoryReport> trajectory; ///< of matching motion alone
     springfit::Values<double> data_share; ///< of each spring, of matching motion: above 1/2 the data sets its stiffness
-    springfit::Index n_clamped = 0;          ///< springs of a closed form that would be negative and are 0
-    std::string caveat;                      ///< for what a closed form is exact, where not for this body
+    springfit::Index n_clamped = 0;       ///< springs of a closed form that would be negative and are 0
+    std::string caveat;                   ///< for what a closed form is exact, where not for this body
     double seconds = 0;
     double held_out = std::numeric_limits<double>::infinity(); ///< until it is scored in full
     double training = std::numeric_limits<double>::infinity();
     std::vector<double> held_out_cases; ///< error of each held-out case on its own, once scored
-    /// Elastic energy in the reference's training motion beside that of the first closed form: below 1 the springs resist
-    /// that motion less.
+    /// Elastic energy in the reference's training motion beside that of the first closed form: below 1 the springs
+    /// resist that motion less.
     double relative_stiffness = 1;
 };
 
@@ -38,9 +38,9 @@ template <int Dim>
                                                           const ReferenceCases<Dim>& cases, const FitOptions& options,
                                                           const springfit::Execution& execution);
 
-/// Fills in the errors of every candidate on the held-out load cases, fits first, and then on at most 12 of the training's,
-/// evenly spread; a Ctrl-C leaves those not reached infinite. A candidate that fails on held-out motion is not tried on
-/// the training's.
+/// Fills in the errors of every candidate on the held-out load cases, fits first, and then on at most 12 of the
+/// training's, evenly spread; a Ctrl-C leaves those not reached infinite. A candidate that fails on held-out motion is
+/// not tried on the training's.
 template <int Dim>
 void score(std::vector<Candidate<Dim>>& candidates, const ReferenceCases<Dim>& cases,
            const springfit::Execution& execution);

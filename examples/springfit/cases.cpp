@@ -50,7 +50,8 @@ std::vector<int> clamped_nodes(const std::vector<std::string>& clamps, const Poi
         const std::string side = clamp.substr(0, clamp.find(':'));
         const int axis = side.empty() ? -1 : side[0] - 'x';
         const bool is_side = axis >= 0 && axis < Dim && (side.substr(1) == "-min" || side.substr(1) == "-max");
-        require(is_side, "--clamp", Dim == 2 ? "x-min, x-max, y-min or y-max" : "x-min, x-max, y-min, ... or z-max", clamp);
+        require(is_side, "--clamp", Dim == 2 ? "x-min, x-max, y-min or y-max" : "x-min, x-max, y-min, ... or z-max",
+                clamp);
         double part = 0.05;
         if (side.size() < clamp.size()) {
             const std::string number = clamp.substr(side.size() + 1);
@@ -87,13 +88,13 @@ void add_statics(const FemReference<Dim>& reference, const Body<Dim, double>& bo
                                           .seed = options.seed + 1000}); // other loads than those in time
     std::size_t n_left_out = 0;
     for (auto* set : {&split.training, &split.held_out_loads, &split.held_out_kinds}) {
-        n_left_out += std::erase_if(*set, [&](const auto& scenario) {
-            return !holds(springfit::clamped_nodes(scenario, body.n_nodes()));
-        });
+        n_left_out += std::erase_if(
+            *set, [&](const auto& scenario) { return !holds(springfit::clamped_nodes(scenario, body.n_nodes())); });
     }
     if (n_left_out > 0) {
-        result.warnings.push_back(text(n_left_out, " equilibria are left out: their clamps hold the reference, but too few "
-                                                   "nodes of the network; more --nodes may help"));
+        result.warnings.push_back(text(n_left_out,
+                                       " equilibria are left out: their clamps hold the reference, but too few "
+                                       "nodes of the network; more --nodes may help"));
     }
     // Half of the training is at small strain, which is quick to record and to match and tells as much of most springs.
     std::vector<Scenario<Dim, double>> small;
@@ -277,12 +278,14 @@ ReferenceCases<Dim> split_recorded(std::vector<Motion<Dim, double>> motions, con
 template std::vector<int> clamped_nodes<2>(const std::vector<std::string>&, const Points<2, double>&);
 template std::vector<int> clamped_nodes<3>(const std::vector<std::string>&, const Points<3, double>&);
 template ReferenceCases<2> record_cases<2>(const FemReference<2>&, Body<2, double>, const Discretisation<2>&,
-                                             const FitOptions&, const Execution&,
-                                             const std::function<bool(const std::vector<int>&)>&);
+                                           const FitOptions&, const Execution&,
+                                           const std::function<bool(const std::vector<int>&)>&);
 template ReferenceCases<3> record_cases<3>(const FemReference<3>&, Body<3, double>, const Discretisation<3>&,
-                                             const FitOptions&, const Execution&,
-                                             const std::function<bool(const std::vector<int>&)>&);
-template ReferenceCases<2> split_recorded<2>(std::vector<Motion<2, double>>, const Discretisation<2>&, const FitOptions&);
-template ReferenceCases<3> split_recorded<3>(std::vector<Motion<3, double>>, const Discretisation<3>&, const FitOptions&);
+                                           const FitOptions&, const Execution&,
+                                           const std::function<bool(const std::vector<int>&)>&);
+template ReferenceCases<2> split_recorded<2>(std::vector<Motion<2, double>>, const Discretisation<2>&,
+                                             const FitOptions&);
+template ReferenceCases<3> split_recorded<3>(std::vector<Motion<3, double>>, const Discretisation<3>&,
+                                             const FitOptions&);
 
 } // namespace program

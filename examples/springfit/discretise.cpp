@@ -27,13 +27,14 @@ Discretisation<Dim> discretise(const AnyMesh& any, const FitOptions& options) {
                                                           .volume = options.volume,
                                                           .density = options.density,
                                                           .thickness = thickness});
-                body.closed_forms = closed_forms(mesh, body.network.springs,
-                                                 {.young = options.young, .poisson = options.poisson, .thickness = thickness});
+                body.closed_forms =
+                    closed_forms(mesh, body.network.springs,
+                                 {.young = options.young, .poisson = options.poisson, .thickness = thickness});
                 if constexpr (SimplexCell<Cell> && Cell::dimension == Dim) {
                     if (options.volume) {
-                        body.cauchy_split = cauchy_split(
-                            mesh, body.network.springs,
-                            {.young = options.young, .poisson = options.poisson, .thickness = thickness});
+                        body.cauchy_split =
+                            cauchy_split(mesh, body.network.springs,
+                                         {.young = options.young, .poisson = options.poisson, .thickness = thickness});
                     }
                 }
                 body.topology = io::motion_topology(mesh, body.network.springs);
@@ -80,7 +81,8 @@ AnyMesh mesh_of(const io::RecordedMotion<Dim, double>& recorded, const std::stri
             return mesh;
         } else {
             throw FileError(path, text("/mesh/cells: expected triangles, quadrilaterals, tetrahedra or hexahedra that "
-                                       "springs can be laid along, found ", Cell::name, " cells in dimension ", Dim));
+                                       "springs can be laid along, found ",
+                                       Cell::name, " cells in dimension ", Dim));
         }
     });
 }

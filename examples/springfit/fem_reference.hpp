@@ -33,11 +33,13 @@ public:
         auto options = m_options;
         options.dilatation = fem::Dilatation::pointwise;
         const fem::Model model(m_corner_mesh, linear, m_density, options);
-        const FreeNodes free(m_corner_mesh.n_nodes(), springfit::clamped_nodes(scenarios.front(), m_corner_mesh.n_nodes()));
+        const FreeNodes free(m_corner_mesh.n_nodes(),
+                             springfit::clamped_nodes(scenarios.front(), m_corner_mesh.n_nodes()));
         SymmetricSolver<double> solver;
         const auto stiffness = model.stiffness(model.rest_positions(), free);
         require(solver.factorise(stiffness) && solver.shift() == 0, "--clamp",
-                "sides that keep the body from moving as a whole: a deeper one (y-min:0.1; y-min alone, without the option, "
+                "sides that keep the body from moving as a whole: a deeper one (y-min:0.1; y-min alone, without the "
+                "option, "
                 "is 0.05 deep) or a finer mesh (--nodes) has more nodes",
                 text("one that still can, with ", m_corner_mesh.n_nodes() - free.n_free(), " nodes held"));
         std::vector<LinearResponse> responses;
@@ -53,8 +55,8 @@ public:
         return responses;
     }
 
-    [[nodiscard]] springfit::Recording<Dim, double>
-    record(const Scenario& scenario, double beta, const springfit::RecordOptions<double>& how) const override {
+    [[nodiscard]] springfit::Recording<Dim, double> record(const Scenario& scenario, double beta,
+                                                           const springfit::RecordOptions<double>& how) const override {
         auto options = m_options;
         options.stiffness_damping = beta;
         const springfit::fem::Model model(m_mesh, m_material, m_density, options);
@@ -86,7 +88,8 @@ public:
             }
             return responses;
         };
-        (void)springfit::scale_to_strain(scenarios, springfit::edges(m_corner_mesh), m_corner_mesh.nodes, strain, respond);
+        (void)springfit::scale_to_strain(scenarios, springfit::edges(m_corner_mesh), m_corner_mesh.nodes, strain,
+                                         respond);
         auto recordings = springfit::record_statics(model, at_all_nodes(scenarios), how);
         if constexpr (has_edge_nodes) {
             const auto [at_corners, at_nodes] = springfit::corner_interpolations(m_mesh);

@@ -59,7 +59,9 @@ void refuse_meshing_options(const FitOptions& options) {
 
 } // namespace
 
-bool is_motion_file(const std::string& path) { return is_one_of(extension(path), {".xdmf", ".xmf", ".h5", ".hdf5"}); }
+bool is_motion_file(const std::string& path) {
+    return is_one_of(extension(path), {".xdmf", ".xmf", ".h5", ".hdf5"});
+}
 
 int dimension_of(const AnyMesh& mesh) {
     return std::visit([](const auto& m) { return static_cast<int>(m.nodes.rows()); }, mesh);

@@ -22,6 +22,8 @@ void watch_for_interrupt() {
     std::signal(SIGTERM, on_interrupt);
 }
 
-bool interrupted() { return pressed != 0; }
+bool interrupted() {
+    return pressed != 0;
+}
 
 } // namespace program

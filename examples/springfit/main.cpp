@@ -16,7 +16,8 @@ namespace {
 
 /// CLI11 does not know std::optional here: an option that keeps whether it was given.
 template <class Value>
-CLI::Option* add_optional(CLI::App& app, const std::string& name, std::optional<Value>& target, const std::string& help) {
+CLI::Option* add_optional(CLI::App& app, const std::string& name, std::optional<Value>& target,
+                          const std::string& help) {
     return app.add_option_function<Value>(name, [&target](const Value& value) { target = value; }, help);
 }
 
@@ -28,16 +29,18 @@ void declare_fit(CLI::App& app, program::FitOptions& options) {
     app.add_option("--young", options.young, "Young's modulus, Pa")->required();
     app.add_option("--poisson", options.poisson, "Poisson's ratio, in (-1, 0.5)")->required();
     app.add_option("--density", options.density, "density, kg/m^3")->required();
-    app.add_option("--out", options.out, "folder for model.json, report.json, motion.h5, motion.xdmf; with "
-                                          "--reference-nodes surface.h5, surface.xdmf, too")
+    app.add_option("--out", options.out,
+                   "folder for model.json, report.json, motion.h5, motion.xdmf; with "
+                   "--reference-nodes surface.h5, surface.xdmf, too")
         ->required();
 
     const std::string reference = "Reference simulation";
     add_optional(app, "--material", options.material, "material of the FEM reference (default neo-hookean)")
         ->check(CLI::IsMember({"linear", "corotated", "st-venant-kirchhoff", "neo-hookean"}))
         ->group(reference);
-    add_optional(app, "--element", options.element,
-                 "tet4-mean-dilatation, tet4 or tet10; hex8; tri3 or tri6; quad4 (default: the first that fits the cells)")
+    add_optional(
+        app, "--element", options.element,
+        "tet4-mean-dilatation, tet4 or tet10; hex8; tri3 or tri6; quad4 (default: the first that fits the cells)")
         ->check(CLI::IsMember({"tet4", "tet4-mean-dilatation", "tet10", "hex8", "tri3", "tri6", "quad4"}))
         ->group(reference);
     add_optional(app, "--thickness", options.thickness, "thickness of a plane body or membrane, m (default 1)")
@@ -55,24 +58,29 @@ void declare_fit(CLI::App& app, program::FitOptions& options) {
     add_optional(app, "--nodes", options.nodes, "number of nodes to aim at (default 1000)")
         ->excludes(cell_size)
         ->group(mesh);
-    add_optional(app, "--reference-nodes", options.reference_nodes,
-                 "nodes of a finer mesh for the FEM, more than --nodes; its surface is carried by the network (default: the "
-                 "network's own mesh)")
+    add_optional(
+        app, "--reference-nodes", options.reference_nodes,
+        "nodes of a finer mesh for the FEM, more than --nodes; its surface is carried by the network (default: the "
+        "network's own mesh)")
         ->group(mesh);
-    app.add_option("--fill-holes", options.fill_holes, "close holes of the surface of at most this many edges (default none)")
+    app.add_option("--fill-holes", options.fill_holes,
+                   "close holes of the surface of at most this many edges (default none)")
         ->group(mesh);
 
     const std::string cases = "Load cases";
-    app.add_option("--clamp", options.clamps,
-                   "side of the bounding box whose nodes are held, as y-min or x-max:0.1 (the part of the box's extent; "
-                   "default 0.05); may be given several times (default y-min)")
+    app.add_option(
+           "--clamp", options.clamps,
+           "side of the bounding box whose nodes are held, as y-min or x-max:0.1 (the part of the box's extent; "
+           "default 0.05); may be given several times (default y-min)")
         ->group(cases);
     add_optional(app, "--training-cases", options.training_cases, "load cases the fit sees (default 6)")->group(cases);
     add_optional(app, "--held-out-cases", options.held_out_cases, "load cases it never sees (default 3)")->group(cases);
     add_optional(app, "--static-cases", options.static_cases,
                  "equilibria, under three clamps, that matching of motion learns from (default 24)")
         ->group(cases);
-    add_optional(app, "--strain", options.strain, "strain that the loads of every second one, and of those that judge, aim at (default 0.05)")->group(cases);
+    add_optional(app, "--strain", options.strain,
+                 "strain that the loads of every second one, and of those that judge, aim at (default 0.05)")
+        ->group(cases);
     add_optional(app, "--frames", options.frames, "frames of each recorded motion (default 32)")->group(cases);
     add_optional(app, "--deformation", options.deformation,
                  "displacement the loads aim at, as a part of the body's size (default 0.05)")
@@ -94,7 +102,9 @@ void declare_fit(CLI::App& app, program::FitOptions& options) {
         ->group(fit);
     app.add_flag("--volume", options.volume, "cells that hold their volume, too; for nearly incompressible materials")
         ->group(fit);
-    app.add_option("--fit-seconds", options.fit_seconds, "time for matching motion, s")->capture_default_str()->group(fit);
+    app.add_option("--fit-seconds", options.fit_seconds, "time for matching motion, s")
+        ->capture_default_str()
+        ->group(fit);
     app.add_option("--threads", options.threads, "threads, 0 for all")->capture_default_str()->group(fit);
 }
 

@@ -16,25 +16,25 @@ struct FitOptions {
     std::vector<std::string> references; ///< recorded motions instead of the FEM
     std::string out;
 
-    double young = 0;                 ///< Pa
-    double poisson = 0;               ///< -
-    double density = 0;               ///< kg/m^3
-    std::optional<double> thickness;  ///< m, plane bodies and membranes
-    std::optional<std::string> material;  ///< default neo-hookean
+    double young = 0;                    ///< Pa
+    double poisson = 0;                  ///< -
+    double density = 0;                  ///< kg/m^3
+    std::optional<double> thickness;     ///< m, plane bodies and membranes
+    std::optional<std::string> material; ///< default neo-hookean
     std::optional<std::string> element;
     std::optional<double> damping_ratio; ///< of the body's slowest motion
 
     std::optional<double> cell_size; ///< m
     std::optional<int> nodes;
     std::optional<int> reference_nodes; ///< of a finer mesh for the FEM; else it is on the network's mesh
-    int fill_holes = 0; ///< holes of at most this many edges are closed
+    int fill_holes = 0;                 ///< holes of at most this many edges are closed
     std::vector<std::string> clamps;
 
     std::string method = "auto";
     std::string damping = "proportional";
     std::optional<double> zeta; ///< of `--damping ratio`
     bool second_ring = false;
-    bool volume = false; ///< cells that hold their volume, too
+    bool volume = false;      ///< cells that hold their volume, too
     double fit_seconds = 300; ///< for matching motion
 
     std::optional<int> training_cases;

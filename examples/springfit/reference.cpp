@@ -8,7 +8,8 @@ using namespace springfit;
 namespace {
 
 /// The element asked for, or the cell's own default. Throws InvalidArgument unless it is one of `choices`.
-std::string element_for(const FitOptions& options, std::string_view cell, std::initializer_list<std::string_view> choices) {
+std::string element_for(const FitOptions& options, std::string_view cell,
+                        std::initializer_list<std::string_view> choices) {
     const std::string element = options.element.value_or(std::string(*choices.begin()));
     std::string list;
     for (std::string_view choice : choices) {
@@ -38,8 +39,7 @@ std::unique_ptr<FemReference<3>> make_fem_reference<3>(const AnyMesh& mesh, cons
         if (element == "tet10") {
             return reference_tet10(*tets, options);
         }
-        return reference_tet4(*tets, options,
-                              element == "tet4" ? fem::Dilatation::pointwise : fem::Dilatation::mean);
+        return reference_tet4(*tets, options, element == "tet4" ? fem::Dilatation::pointwise : fem::Dilatation::mean);
     }
     require(!std::holds_alternative<Mesh<3, double, Tri3>>(mesh), "INPUT",
             "a solid (a membrane needs a recorded --reference)", "triangles in space");

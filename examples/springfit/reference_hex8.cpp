@@ -4,7 +4,7 @@
 namespace program {
 
 std::unique_ptr<FemReference<3>> reference_hex8(const springfit::Mesh<3, double, springfit::Hex8>& mesh,
-                                              const FitOptions& options) {
+                                                const FitOptions& options) {
     return make_for_material<3, springfit::Hex8>(mesh, options, springfit::fem::Dilatation::mean, "hex8");
 }
 

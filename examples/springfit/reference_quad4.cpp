@@ -4,7 +4,7 @@
 namespace program {
 
 std::unique_ptr<FemReference<2>> reference_quad4(const springfit::Mesh<2, double, springfit::Quad4>& mesh,
-                                              const FitOptions& options) {
+                                                 const FitOptions& options) {
     return make_for_material<2, springfit::Quad4>(mesh, options, springfit::fem::Dilatation::pointwise, "quad4");
 }
 

@@ -4,7 +4,7 @@
 namespace program {
 
 std::unique_ptr<FemReference<3>> reference_tet10(const springfit::Mesh<3, double, springfit::Tet4>& mesh,
-                                              const FitOptions& options) {
+                                                 const FitOptions& options) {
     return make_for_material<3, springfit::Tet10>(mesh, options, springfit::fem::Dilatation::pointwise, "tet10");
 }
 

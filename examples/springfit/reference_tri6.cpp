@@ -4,7 +4,7 @@
 namespace program {
 
 std::unique_ptr<FemReference<2>> reference_tri6(const springfit::Mesh<2, double, springfit::Tri3>& mesh,
-                                              const FitOptions& options) {
+                                                const FitOptions& options) {
     return make_for_material<2, springfit::Tri6>(mesh, options, springfit::fem::Dilatation::pointwise, "tri6");
 }
 

@@ -89,7 +89,8 @@ int simulate_model(const io::Model<Dim, double>& model, const SimulateOptions& o
 } // namespace
 
 int run_simulate(const SimulateOptions& options) {
-    require(options.duration > 0 && std::isfinite(options.duration), "--duration", "a positive time, s", options.duration);
+    require(options.duration > 0 && std::isfinite(options.duration), "--duration", "a positive time, s",
+            options.duration);
     require(options.frames >= 2, "--frames", "at least 2", options.frames);
     require(!options.time_step || (*options.time_step > 0 && std::isfinite(*options.time_step)), "--time-step",
             "a positive time, s", options.time_step.value_or(0));

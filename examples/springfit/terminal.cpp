@@ -28,7 +28,9 @@ Stage::~Stage() {
     std::fprintf(stderr, "%-28s %7.1f s%s\n", m_name.c_str(), seconds(), interrupted() ? "  (interrupted)" : "");
 }
 
-double Stage::seconds() const { return std::chrono::duration<double>(Clock::now() - m_start).count(); }
+double Stage::seconds() const {
+    return std::chrono::duration<double>(Clock::now() - m_start).count();
+}
 
 springfit::ProgressCallback Stage::callback(std::size_t part, std::size_t parts) {
     m_done.resize(parts, 0);

@@ -122,7 +122,8 @@ TEST_CASE("a membrane holds the points on it and knows the nearest to others") {
     CHECK(near.nodes.size() == 3);
 }
 
-TEST_CASE_TEMPLATE("interpolation carries affine fields exactly, and near points to the surface", Scalar, float, double) {
+TEST_CASE_TEMPLATE("interpolation carries affine fields exactly, and near points to the surface", Scalar, float,
+                   double) {
     const auto mesh = shaken(tetrahedron_grid<Scalar>({3, 3, 3}, {1, 1, 1}));
     const auto inside = random_points<3, Scalar>(60, Scalar(0), Scalar(1));
     const auto weights = cgal::interpolation(mesh, inside);
@@ -166,7 +167,8 @@ TEST_CASE("a fine mesh and a coarse one exchange motion and keep force and mass"
         return sum;
     };
     CHECK((carried.external_forces[0].rowwise().sum() - motion.external_forces[0].rowwise().sum()).norm() < 1e-12);
-    CHECK((moment(coarse.nodes, carried.external_forces[0]) - moment(fine.nodes, motion.external_forces[0])).norm() < 1e-12);
+    CHECK((moment(coarse.nodes, carried.external_forces[0]) - moment(fine.nodes, motion.external_forces[0])).norm() <
+          1e-12);
     std::vector<int> bottom;
     for (int node : boundary_nodes(coarse)) {
         if (coarse.nodes(2, node) == 0) {

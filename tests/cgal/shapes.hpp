@@ -60,11 +60,13 @@ inline Triangles l_shape() {
 /// An octahedron whose faces are cut in four again and again, its points on the unit sphere.
 inline Triangles sphere(int cuts) {
     std::vector<std::array<double, 3>> points{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
-    std::vector<std::vector<int>> faces{{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+    std::vector<std::vector<int>> faces{{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
+                                        {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
     for (int cut = 0; cut < cuts; ++cut) {
         std::map<std::array<int, 2>, int> middle;
         const auto between = [&](int a, int b) {
-            const auto [at, is_new] = middle.insert({{std::min(a, b), std::max(a, b)}, static_cast<int>(points.size())});
+            const auto [at, is_new] =
+                middle.insert({{std::min(a, b), std::max(a, b)}, static_cast<int>(points.size())});
             if (is_new) {
                 const auto& p = points[static_cast<std::size_t>(a)];
                 const auto& q = points[static_cast<std::size_t>(b)];

@@ -30,9 +30,10 @@ bool contains(const std::string& text, const std::string& part) {
 TEST_CASE("every file format, text and binary, gives the same solid") {
     const test::TemporaryFolder folder;
     const auto l = test::l_shape();
-    for (const auto& path : {folder.file("l.off", test::off(l)), folder.file("l.obj", test::obj(l)),
-                             folder.file("text.ply", test::ply(l, false)), folder.file("binary.ply", test::ply(l, true)),
-                             folder.file("text.stl", test::stl(l, false)), folder.file("binary.STL", test::stl(l, true))}) {
+    for (const auto& path :
+         {folder.file("l.off", test::off(l)), folder.file("l.obj", test::obj(l)),
+          folder.file("text.ply", test::ply(l, false)), folder.file("binary.ply", test::ply(l, true)),
+          folder.file("text.stl", test::stl(l, false)), folder.file("binary.STL", test::stl(l, true))}) {
         CAPTURE(path.filename().string());
         const auto surface = cgal::read_surface(path);
         CHECK(surface.n_nodes() == 12);
@@ -48,8 +49,9 @@ TEST_CASE("every file format, text and binary, gives the same solid") {
 
 TEST_CASE("polygons are cut, points given twice merged, faces turned outwards, flat ones dropped") {
     const test::TemporaryFolder folder;
-    const auto quads = folder.file("quads.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
-                                                "f 1 2 3 4\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+    const auto quads =
+        folder.file("quads.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+                                 "f 1 2 3 4\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
     CHECK(relative(cgal::examine(cgal::read_surface(quads)).volume, 1., 1.) < 1e-14);
 
     auto inside_out = test::box(1, 2, 3);
@@ -61,8 +63,8 @@ TEST_CASE("polygons are cut, points given twice merged, faces turned outwards, f
 
     auto messy = test::box(1, 1, 1);
     messy.cells.conservativeResize(3, 14);
-    messy.cells.col(12) << 0, 1, 1;            // no area
-    messy.cells.col(13) = messy.cells.col(3);  // twice
+    messy.cells.col(12) << 0, 1, 1;           // no area
+    messy.cells.col(13) = messy.cells.col(3); // twice
     const auto clean = cgal::repair(messy);
     CHECK(clean.n_cells() == 12);
     CHECK(cgal::examine(clean).bounds_volume);

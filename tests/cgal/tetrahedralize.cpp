@@ -39,7 +39,8 @@ double smallest_dihedral(const Mesh<3, double, Tet4>& mesh) {
         std::array<Vector<3, double>, 4> normals;
         for (std::size_t f = 0; f < 4; ++f) {
             const auto& corners = Tet4::facets[f];
-            normals[f] = (x.col(corners[1]) - x.col(corners[0])).cross(x.col(corners[2]) - x.col(corners[0])).normalized();
+            normals[f] =
+                (x.col(corners[1]) - x.col(corners[0])).cross(x.col(corners[2]) - x.col(corners[0])).normalized();
         }
         for (std::size_t f = 0; f < 4; ++f) {
             for (std::size_t g = 0; g < f; ++g) {
@@ -146,8 +147,8 @@ TEST_CASE("what cannot be meshed is refused with what is wrong") {
     CHECK_THROWS_WITH_AS((void)cgal::tetrahedralize<double>(open, {.cell_size = 1}),
                          "surface: expected a closed surface, found an open one: 3 boundary edges around 1 hole",
                          InvalidArgument);
-    CHECK(relative(volume(cgal::tetrahedralize<double>(open, {.cell_size = 1, .repair = {.max_hole_edges = 3}})), 1., 1.) <
-          1e-12);
+    CHECK(relative(volume(cgal::tetrahedralize<double>(open, {.cell_size = 1, .repair = {.max_hole_edges = 3}})), 1.,
+                   1.) < 1e-12);
     CHECK_THROWS_AS((void)cgal::tetrahedralize<double>("/no/such/surface.off", {.cell_size = 1}), FileError);
 
     const auto apart = test::both(surface, surface, {3, 0, 0});
@@ -155,20 +156,22 @@ TEST_CASE("what cannot be meshed is refused with what is wrong") {
                          "cell_size: expected a mesh of one piece (finer cells join thin parts; several_pieces accepts "
                          "more), found 2 pieces",
                          InvalidArgument);
-    CHECK(relative(volume(cgal::tetrahedralize<double>(apart, {.cell_size = 0.5, .several_pieces = true})), 2., 2.) < 1e-12);
+    CHECK(relative(volume(cgal::tetrahedralize<double>(apart, {.cell_size = 0.5, .several_pieces = true})), 2., 2.) <
+          1e-12);
 }
 
 TEST_CASE("the caller may stop the search and gets the best mesh so far") {
     int calls = 0;
     std::string stage;
     double last = 0;
-    const auto mesh = cgal::tetrahedralize<double>(test::sphere(2), {.n_nodes = 300, .progress = [&](const Progress& p) {
-                                                                         CHECK(p.fraction >= last);
-                                                                         CHECK(p.fraction <= 1);
-                                                                         last = p.fraction;
-                                                                         stage = p.stage;
-                                                                         return ++calls < 1;
-                                                                     }});
+    const auto mesh =
+        cgal::tetrahedralize<double>(test::sphere(2), {.n_nodes = 300, .progress = [&](const Progress& p) {
+                                                           CHECK(p.fraction >= last);
+                                                           CHECK(p.fraction <= 1);
+                                                           last = p.fraction;
+                                                           stage = p.stage;
+                                                           return ++calls < 1;
+                                                       }});
     CHECK(mesh.n_cells() > 0);
     CHECK(calls >= 1);
     CHECK(stage == "mesh");

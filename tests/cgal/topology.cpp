@@ -135,17 +135,22 @@ TEST_CASE("bodies that hang together in one node or edge are seen whole") {
 TEST_CASE("meshes and questions that make no sense are refused") {
     auto mesh = triangle_grid<double>({2, 1}, {1., 1.});
     std::swap(mesh.cells(0, 1), mesh.cells(1, 1));
-    CHECK_THROWS_WITH_AS(cgal::Topology{mesh}, "mesh: expected cells oriented alike, found cells 0 and 1 oriented against "
-                                               "each other", InvalidArgument);
+    CHECK_THROWS_WITH_AS(cgal::Topology{mesh},
+                         "mesh: expected cells oriented alike, found cells 0 and 1 oriented against "
+                         "each other",
+                         InvalidArgument);
     Mesh<3, double, Tri3> fan; // three triangles at one edge
     fan.nodes.resize(3, 5);
     fan.nodes << 0, 0, 1, -1, 0, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0;
     fan.cells.resize(3, 3);
     fan.cells << 0, 1, 0, 1, 0, 1, 2, 3, 4;
-    CHECK_THROWS_WITH_AS(cgal::Topology{fan}, "mesh: expected facets shared by at most two cells, found 3 cells at a facet "
-                                              "of cell 0", InvalidArgument);
+    CHECK_THROWS_WITH_AS(cgal::Topology{fan},
+                         "mesh: expected facets shared by at most two cells, found 3 cells at a facet "
+                         "of cell 0",
+                         InvalidArgument);
     const cgal::Topology topology(hex_grid<double>({1, 1, 1}, {1., 1., 1.}));
-    CHECK_THROWS_WITH_AS((void)topology.cells_of_node(8), "node: expected a number in [0, 8), found 8", InvalidArgument);
+    CHECK_THROWS_WITH_AS((void)topology.cells_of_node(8), "node: expected a number in [0, 8), found 8",
+                         InvalidArgument);
     CHECK_THROWS_AS((void)topology.k_ring(0, -1), InvalidArgument);
     CHECK_THROWS_AS((void)topology.cells_across(1), InvalidArgument);
     CHECK(topology.cells_of_edge(0, 6).empty());

@@ -60,9 +60,10 @@ bool contains(const std::string& text, const std::string& part) {
 }
 
 /// A 4 x 3 plate with a 1 x 1 hole in it: area 11.
-const std::string plate_poly = "# a plate\n8 2 0 1\n1 0 0 1\n2 4 0 1\n3 4 3 1 # a corner\n4 0 3 1\n5 1 1 2\n6 2 1 2\n7 2 2 2\n"
-                               "8 1 2 2\n\n8 1\n1 1 2 5\n2 2 3 5\n3 3 4 5\n4 4 1 5\n5 5 6 5\n6 6 7 5\n7 7 8 5\n8 8 5 5\n1\n"
-                               "1 1.5 1.5\n";
+const std::string plate_poly =
+    "# a plate\n8 2 0 1\n1 0 0 1\n2 4 0 1\n3 4 3 1 # a corner\n4 0 3 1\n5 1 1 2\n6 2 1 2\n7 2 2 2\n"
+    "8 1 2 2\n\n8 1\n1 1 2 5\n2 2 3 5\n3 3 4 5\n4 4 1 5\n5 5 6 5\n6 6 7 5\n7 7 8 5\n8 8 5 5\n1\n"
+    "1 1.5 1.5\n";
 const std::string plate_wkt = "POLYGON ((0 0, 4 0,\n 4 3, 0 3, 0 0),\n (1 1, 1 2, 2 2, 2 1, 1 1))\n";
 
 } // namespace
@@ -86,19 +87,22 @@ TEST_CASE("plates with holes are filled exactly, from either format") {
         CHECK(relative(static_cast<double>(counted.n_nodes()), 500., 500.) < 0.1);
         CHECK(cgal::triangulate<double>(path, {.n_nodes = 500}).nodes == counted.nodes);
     }
-    const auto square = folder.file("zero.poly", "4 2 0 0\n0 0 0\n1 1 0\n2 1 1\n3 0 1\n4 0\n0 0 1\n1 1 2\n2 2 3\n3 3 0\n0\n");
+    const auto square =
+        folder.file("zero.poly", "4 2 0 0\n0 0 0\n1 1 0\n2 1 1\n3 0 1\n4 0\n0 0 1\n1 1 2\n2 2 3\n3 3 0\n0\n");
     CHECK(relative(area(cgal::triangulate<double>(square, {.cell_size = 0.5})), 1., 1.) < 1e-14);
 }
 
 TEST_CASE("islands in holes, several areas and inner segments come out as drawn") {
     const test::TemporaryFolder folder;
-    const auto island = folder.file("island.wkt", "multipolygon (((0 0, 9 0, 9 9, 0 9, 0 0), (1 1, 1 8, 8 8, 8 1, 1 1)),\n"
-                                                  "((3 3, 6 3, 6 6, 3 6, 3 3)))");
+    const auto island =
+        folder.file("island.wkt", "multipolygon (((0 0, 9 0, 9 9, 0 9, 0 0), (1 1, 1 8, 8 8, 8 1, 1 1)),\n"
+                                  "((3 3, 6 3, 6 6, 3 6, 3 3)))");
     CHECK(contains(message([&] { (void)cgal::triangulate<double>(island, {.cell_size = 1}); }),
                    "expected an outline of one piece (several_pieces accepts more), found 2 pieces"));
-    CHECK(relative(area(cgal::triangulate<double>(island, {.cell_size = 1, .several_pieces = true})), 81. - 49 + 9, 41.) <
-          1e-12);
-    const auto neighbours = folder.file("two.wkt", "POLYGON ((0 0, 1 0, 1 1, 0 1, 0 0))\nPOLYGON ((1 0, 2 0, 2 1, 1 1, 1 0))\n");
+    CHECK(relative(area(cgal::triangulate<double>(island, {.cell_size = 1, .several_pieces = true})), 81. - 49 + 9,
+                   41.) < 1e-12);
+    const auto neighbours =
+        folder.file("two.wkt", "POLYGON ((0 0, 1 0, 1 1, 0 1, 0 0))\nPOLYGON ((1 0, 2 0, 2 1, 1 1, 1 0))\n");
     const auto mesh = cgal::triangulate<double>(neighbours, {.cell_size = 0.3});
     CHECK(relative(area(mesh), 2., 2.) < 1e-14);
 
@@ -169,9 +173,11 @@ TEST_CASE("what is wrong with a file is said with its name and line") {
     const auto replaced = [](std::string whole, const std::string& part, const std::string& by) {
         return whole.replace(whole.find(part), part.size(), by);
     };
-    CHECK(contains(read("n.poly", replaced(plate_poly, "2 4 0 1", "2 4 nan 1")), "n.poly:4: a coordinate is not finite: nan"));
+    CHECK(contains(read("n.poly", replaced(plate_poly, "2 4 0 1", "2 4 nan 1")),
+                   "n.poly:4: a coordinate is not finite: nan"));
     CHECK(contains(read("w.poly", replaced(plate_poly, "2 4 0 1", "2 4 four 1")), "w.poly:4: not a number: four"));
-    CHECK(contains(read("s.poly", replaced(plate_poly, "2 4 0 1", "2 4")), "s.poly:4: expected a vertex, 3 numbers, found 2"));
+    CHECK(contains(read("s.poly", replaced(plate_poly, "2 4 0 1", "2 4")),
+                   "s.poly:4: expected a vertex, 3 numbers, found 2"));
     CHECK(contains(read("i.poly", replaced(plate_poly, "2 2 3 5", "2 2 9 5")),
                    "i.poly:14: expected a vertex' number in [1, 8], found 9"));
     CHECK(contains(read("c.poly", plate_poly.substr(0, 60)), "ends where a vertex should be"));
@@ -182,7 +188,8 @@ TEST_CASE("what is wrong with a file is said with its name and line") {
     CHECK(contains(read("o.wkt", "POLYGON ((0 0, 4 0, 4 3, 0 3))\n"),
                    "o.wkt:1: the outer ring is open: it starts at (0 0) and ends at (0 3)"));
     CHECK(contains(read("h.wkt", "\nPOLYGON ((0 0, 4 0, 4 3, 0 0), (1 1, 2 1, 2 2))\n"), "h.wkt:2: hole 1 is open"));
-    CHECK(contains(read("l.wkt", "LINESTRING (0 0, 1 1)\n"), "l.wkt:1: expected POLYGON or MULTIPOLYGON, found LINESTRING"));
+    CHECK(contains(read("l.wkt", "LINESTRING (0 0, 1 1)\n"),
+                   "l.wkt:1: expected POLYGON or MULTIPOLYGON, found LINESTRING"));
     CHECK(contains(read("b.wkt", "POLYGON ((0 0, 4 0, 4 3, 0 3, 0 0)\n"), "b.wkt:1: "));
     CHECK(contains(read("e.wkt", "POLYGON EMPTY\n"), "empty outline"));
     CHECK(contains(read("x.wkt", "POLYGON ((0 0, 1 1, 1 0, 0 1, 0 0))\n"), "1 pair that cross, touch or overlap"));

@@ -27,8 +27,8 @@ struct Bar {
     std::vector<int> left = test::nodes_where(mesh, [](const auto& x) { return x(0) < 1e-9; });
 
     [[nodiscard]] SolidModel model(double alpha = 0, double beta = 0) const {
-        return {mesh, rubber, 1000.,
-                {.dilatation = Dilatation::mean, .mass_damping = alpha, .stiffness_damping = beta}};
+        return {
+            mesh, rubber, 1000., {.dilatation = Dilatation::mean, .mass_damping = alpha, .stiffness_damping = beta}};
     }
 };
 
@@ -64,8 +64,7 @@ std::vector<double> crossings(const Motion<2, double>& motion, const Value& valu
         const double before = value(motion.positions[t - 1]);
         const double after = value(motion.positions[t]);
         if (before * after < 0) {
-            times.push_back(motion.times[t - 1] +
-                            (motion.times[t] - motion.times[t - 1]) * before / (before - after));
+            times.push_back(motion.times[t - 1] + (motion.times[t] - motion.times[t - 1]) * before / (before - after));
         }
     }
     return times;
@@ -116,8 +115,7 @@ TEST_CASE("the trapezoidal rule keeps the energy of a linear body, HHT never add
         scenario.initial_velocities.col(node).setZero();
     }
     const auto energy = [&](const auto& state) {
-        return model.energy(state.positions) +
-               state.velocities.cwiseAbs2().colwise().sum().dot(model.masses()) / 2;
+        return model.energy(state.positions) + state.velocities.cwiseAbs2().colwise().sum().dot(model.masses()) / 2;
     };
     for (const double alpha : {0., -0.1}) {
         fem::Dynamics stepper{model, {.alpha = alpha, .tolerance = 1e-11}};
@@ -179,8 +177,7 @@ TEST_CASE("a bar rings at the frequency of its first axial mode, and Rayleigh da
 
     const double ratio = 0.05; // zeta = (alpha / omega + beta omega) / 2
     for (const auto& damping : {std::array{2 * ratio * omega, 0.}, std::array{0., 2 * ratio / omega}}) {
-        const fem::Model damped{mesh, material, 1000.,
-                                {.mass_damping = damping[0], .stiffness_damping = damping[1]}};
+        const fem::Model damped{mesh, material, 1000., {.mass_damping = damping[0], .stiffness_damping = damping[1]}};
         const auto fading = record(damped, scenario, options).motion;
         const double left = stretch(fading.positions[160]) / 1e-3; // two periods on
         const double expected = std::exp(-ratio * omega * fading.times[160]);

@@ -43,7 +43,9 @@ std::array<double, std::size_t(Cell::dimension)> node(int a) {
     return xi;
 }
 
-double factorial(int k) { return k <= 1 ? 1. : k * factorial(k - 1); }
+double factorial(int k) {
+    return k <= 1 ? 1. : k * factorial(k - 1);
+}
 
 /// Integral of the monomial with exponents p over the reference element.
 template <class Cell>

@@ -128,8 +128,7 @@ TEST_CASE_TEMPLATE("rest is free of stress and has Hooke's tangent", S, SETTINGS
     const double poisson = 0.35;
     const double mu = young / (2 * (1 + poisson));
     const double lambda =
-        young * poisson /
-        (S::plane_stress ? 1 - poisson * poisson : (1 + poisson) * (1 - 2 * poisson));
+        young * poisson / (S::plane_stress ? 1 - poisson * poisson : (1 + poisson) * (1 - 2 * poisson));
     const auto check = [&](const auto& law) {
         detail::Invariant<r, c, double> w;
         const Eigen::Matrix<double, r, c> identity = Eigen::Matrix<double, r, c>::Identity();

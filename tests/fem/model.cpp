@@ -112,8 +112,8 @@ TEST_CASE_TEMPLATE("forces and tangent are the derivatives of the energy, in eve
     check_derivatives<B>(fem::NeoHookean{2., 0.4}, 0.05);
 }
 
-TEST_CASE_TEMPLATE("forces and tangent are the derivatives of the energy, for every material", B,
-                   Body<2, double, Tri3>, Body<3, double, Tet4>, Body<3, double, Quad4>) {
+TEST_CASE_TEMPLATE("forces and tangent are the derivatives of the energy, for every material", B, Body<2, double, Tri3>,
+                   Body<3, double, Tet4>, Body<3, double, Quad4>) {
     check_derivatives<B>(fem::LinearElastic{2., 0.4}, 0.1);
     check_derivatives<B>(fem::Corotated{2., 0.4}, 0.1);
     check_derivatives<B>(fem::StVenantKirchhoff{2., 0.4}, 0.1);
@@ -160,16 +160,17 @@ TEST_CASE("what cannot be a body is refused by name") {
     CHECK(message([&] { (void)fem::Model{flat, material, 1.}; }).find("tetrahedron 0 degenerate") != std::string::npos);
     auto not_a_number = mesh;
     not_a_number.nodes(1, 2) = std::nan("");
-    CHECK(message([&] { (void)fem::Model{not_a_number, material, 1.}; })
-              .starts_with("mesh: expected finite coordinates"));
+    CHECK(message([&] {
+              (void)fem::Model{not_a_number, material, 1.};
+          }).starts_with("mesh: expected finite coordinates"));
     CHECK(message([&] { (void)fem::Model{mesh, fem::NeoHookean{1., 0.5}, 1.}; }) ==
           "poisson: expected a value in (-1, 0.5), found 0.5");
-    CHECK(message([&] { (void)fem::Model{mesh, material, -1.}; }) ==
-          "density: expected a positive density, found -1");
+    CHECK(message([&] { (void)fem::Model{mesh, material, -1.}; }) == "density: expected a positive density, found -1");
     CHECK(message([&] { (void)fem::Model{mesh, material, 1., {.thickness = 2}}; }).starts_with("thickness"));
     CHECK(message([&] { (void)fem::Model{mesh, material, 1., {.plane = fem::Plane::strain}}; }).starts_with("plane"));
-    CHECK(message([&] { (void)fem::Model{mesh, material, 1., {.mass_damping = std::nan("")}}; })
-              .starts_with("mass_damping"));
+    CHECK(message([&] {
+              (void)fem::Model{mesh, material, 1., {.mass_damping = std::nan("")}};
+          }).starts_with("mass_damping"));
     const auto sheet = test::box<2, double, Tri3>(1);
     CHECK(message([&] {
               (void)fem::Model{sheet, material, 1., {.dilatation = fem::Dilatation::mean}};

@@ -79,12 +79,11 @@ template <class Cell>
     const fem::Model model{mesh, fem::LinearElastic{1., poisson}, 1., options};
     Scenario<2, double> scenario;
     scenario.clamps = {{nodes_where(mesh, [](const auto& x) { return x(0) < 1e-9; }), {}}};
-    scenario.loads = {fem::surface_traction(
-        mesh, facets_where(mesh, [](const auto& x) { return x(0) > 48 - 1e-9; }), {0., 1. / 16})};
+    scenario.loads = {
+        fem::surface_traction(mesh, facets_where(mesh, [](const auto& x) { return x(0) > 48 - 1e-9; }), {0., 1. / 16})};
     const auto report = fem::equilibrium(model, scenario, 0., {.tolerance = 1e-9});
     const Index tip = node_at<2, Cell>(mesh, {48., 52.});
-    return report.status == Status::converged ? report.state.positions(1, tip) - mesh.nodes(1, tip)
-                                              : std::nan("");
+    return report.status == Status::converged ? report.state.positions(1, tip) - mesh.nodes(1, tip) : std::nan("");
 }
 
 /// Tip deflection of a clamped beam of length 10 and a square section of side 1 under a shear force P at its end, over
@@ -106,8 +105,8 @@ template <class Cell>
     scenario.clamps = {{nodes_where(mesh, [](const auto& x) { return x(0) < 1e-9; }), {}}};
     Vector<dim, double> traction = Vector<dim, double>::Zero();
     traction(1) = force;
-    scenario.loads = {fem::surface_traction(
-        mesh, facets_where(mesh, [&](const auto& x) { return x(0) > length - 1e-9; }), traction)};
+    scenario.loads = {
+        fem::surface_traction(mesh, facets_where(mesh, [&](const auto& x) { return x(0) > length - 1e-9; }), traction)};
     const auto report = fem::equilibrium(model, scenario, 0., {.tolerance = 1e-8});
     Vector<dim, double> end = Vector<dim, double>::Constant(0.5);
     end(0) = length;

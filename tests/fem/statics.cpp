@@ -15,9 +15,9 @@ TEST_CASE("a membrane pulled at its rim has the stretch of its stress-strain cur
     scenario.clamps = {{test::nodes_where(mesh, [](const auto& x) { return x(0) < 1e-9; }), {}}};
     const double stretch = 1.3;
     const double first_piola = young * stretch * (stretch * stretch - 1) / 2;
-    scenario.loads = {fem::surface_traction(
-        mesh, test::facets_where(mesh, [](const auto& x) { return x(0) > 2 - 1e-9; }),
-        {first_piola * thickness, 0., 0.})};
+    scenario.loads = {fem::surface_traction(mesh,
+                                            test::facets_where(mesh, [](const auto& x) { return x(0) > 2 - 1e-9; }),
+                                            {first_piola * thickness, 0., 0.})};
     const auto report = fem::equilibrium(model, scenario, 0., {.tolerance = 1e-11});
     CHECK(report.status == Status::converged);
     Points<3, double> expected = mesh.nodes;

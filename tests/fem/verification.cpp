@@ -46,9 +46,8 @@ double manufactured_error(int n, Dilatation dilatation, double poisson) {
         return b;
     };
     Scenario<dim, double> scenario;
-    scenario.clamps = {{test::nodes_where(mesh, [](const Point& x) {
-                            return x.minCoeff() < 1e-9 || x.maxCoeff() > 1 - 1e-9;
-                        }), {}}};
+    scenario.clamps = {
+        {test::nodes_where(mesh, [](const Point& x) { return x.minCoeff() < 1e-9 || x.maxCoeff() > 1 - 1e-9; }), {}}};
     scenario.loads = {fem::body_force(model, load)};
     const auto report = fem::equilibrium(model, scenario, 0., {.tolerance = 1e-9});
     REQUIRE(report.status == Status::converged);

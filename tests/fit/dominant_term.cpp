@@ -286,8 +286,8 @@ TEST_CASE_TEMPLATE("bounds hold to the last bit and active ones push the right w
         options.parameters.damping.fit = true;
         const FitProblem fixed = acceleration_problem<dim, Scalar>(network, {motion}, options);
         const FitReport with_fixed = dominant_term(fixed, {.max_sweeps = 500});
-        CHECK((fixed.parameters.per_spring(ParameterKind::stiffness, with_fixed.theta).array() == 400)
-                  .count() >= problem.n_unknowns());
+        CHECK((fixed.parameters.per_spring(ParameterKind::stiffness, with_fixed.theta).array() == 400).count() >=
+              problem.n_unknowns());
         CHECK(with_fixed.objective < fixed.objective.value(fixed.prior));
     }
 }

@@ -34,7 +34,7 @@ TEST_CASE("a file appears when it is complete, and replaces what was there") {
     write_file(folder / "b.txt", "");
     CHECK(folder.names() == std::vector<std::string>{"a.txt", "b.txt"});
 
-    struct stat status {};
+    struct stat status{};
     REQUIRE(::stat((folder / "b.txt").c_str(), &status) == 0);
     const mode_t mask = ::umask(0);
     ::umask(mask);
@@ -138,7 +138,9 @@ TEST_CASE("an output folder is created with its parents, and goes again where no
         write_file(output.path() / "kept.txt", "x");
     }
     CHECK(content(folder / "a/b/kept.txt") == "x");
-    { const OutputFolder output(folder / "a/b"); }
+    {
+        const OutputFolder output(folder / "a/b");
+    }
     CHECK(content(folder / "a/b/kept.txt") == "x");
 }
 

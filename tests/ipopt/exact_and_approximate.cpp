@@ -250,10 +250,9 @@ TEST_CASE_TEMPLATE("where springs cannot represent the material, fifty sweeps co
             std::string name;
             Motion<dim, double> motion;
         };
-        for (const Data& data :
-             {Data{"noise", test::linear_motion<dim>(network, stiffness, noise)},
-              Data{"smooth", test::linear_motion<dim>(network, stiffness, smooth)},
-              Data{"vibration", test::vibration<dim>(network, stiffness, 100, 1e-3, random)}}) {
+        for (const Data& data : {Data{"noise", test::linear_motion<dim>(network, stiffness, noise)},
+                                 Data{"smooth", test::linear_motion<dim>(network, stiffness, smooth)},
+                                 Data{"vibration", test::vibration<dim>(network, stiffness, 100, 1e-3, random)}}) {
             CAPTURE(poisson);
             CAPTURE(data.name);
             const FitProblem problem = acceleration_problem<dim, double>(network, {data.motion});

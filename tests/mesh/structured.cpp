@@ -99,7 +99,8 @@ TEST_CASE("bad sizes and broken meshes are refused by name") {
     CHECK_THROWS_AS(validate(mesh), InvalidArgument);
     mesh = triangle_grid<double>({2, 2}, {1., 1.});
     mesh.cells(0, 3) = 9;
-    CHECK_THROWS_WITH_AS(validate(mesh), "mesh: expected node numbers in [0, 9), found node 9 in cell 3", InvalidArgument);
+    CHECK_THROWS_WITH_AS(validate(mesh), "mesh: expected node numbers in [0, 9), found node 9 in cell 3",
+                         InvalidArgument);
     mesh = triangle_grid<double>({2, 2}, {1., 1.});
     mesh.cells.conservativeResize(3, 0);
     CHECK_THROWS_WITH_AS(validate(mesh), "mesh: expected at least one cell, found none", InvalidArgument);

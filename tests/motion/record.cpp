@@ -66,7 +66,8 @@ TEST_CASE_TEMPLATE("a recording holds the frames of the motion", T, SPRINGFIT_TE
             CHECK(test::relative(motion.times[t], time, Scalar(1)) < rounding<Scalar>());
             Points<dim, Scalar> expected = motion.rest_positions;
             for (const Index free : {0, 1, 3}) {
-                expected.col(free) += time * Vector<dim, Scalar>::Ones() + time * time / 2 * scenario.gravity[0].acceleration;
+                expected.col(free) +=
+                    time * Vector<dim, Scalar>::Ones() + time * time / 2 * scenario.gravity[0].acceleration;
             }
             CHECK(test::relative_difference(motion.positions[t], expected) < rounding<Scalar>());
             CHECK(motion.accelerations[t].col(0) == scenario.gravity[0].acceleration);

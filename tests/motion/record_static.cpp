@@ -67,7 +67,6 @@ std::vector<Scenario<Dim, double>> pushes(const Points<Dim, double>& rest, doubl
     return cases;
 }
 
-
 } // namespace
 
 TEST_CASE_TEMPLATE("springs along the axes give way by F / k each", T, SPRINGFIT_TEST_SPACES) {

@@ -6,7 +6,8 @@
 using namespace springfit;
 using test::rounding;
 
-TEST_CASE_TEMPLATE("external forces are gravity by mass and nodal loads, each by its amplitude", T, SPRINGFIT_TEST_SPACES) {
+TEST_CASE_TEMPLATE("external forces are gravity by mass and nodal loads, each by its amplitude", T,
+                   SPRINGFIT_TEST_SPACES) {
     constexpr int dim = T::dimension;
     using Scalar = typename T::Scalar;
     using V = Vector<dim, Scalar>;
@@ -94,7 +95,8 @@ TEST_CASE("scenarios that do not fit the body are refused by name") {
     S start;
     start.initial_velocities.setZero(3, 4);
     CHECK_NOTHROW(validate(start, 4));
-    CHECK_THROWS_WITH_AS(validate(start, 5), "initial state: expected 5 columns, one per node, found 4", InvalidArgument);
+    CHECK_THROWS_WITH_AS(validate(start, 5), "initial state: expected 5 columns, one per node, found 4",
+                         InvalidArgument);
     start.initial_velocities(0, 0) = INFINITY;
     CHECK_THROWS_AS(validate(start, 4), InvalidArgument);
 }

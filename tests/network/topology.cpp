@@ -96,9 +96,8 @@ TEST_CASE("springs that cannot be are refused by name") {
     nodes(0, 1) = std::nan("");
     CHECK(build(pairs_of({{0, 1}})) != "accepted");
     nodes(0, 1) = 1;
-    CHECK(refusal([&] {
-              (void)springs_from_list<2, double>(nodes, pairs_of({{0, 1}}), Values<double>::Ones(3));
-          }) == "mass: expected 4 values, one per node, found 3");
+    CHECK(refusal([&] { (void)springs_from_list<2, double>(nodes, pairs_of({{0, 1}}), Values<double>::Ones(3)); }) ==
+          "mass: expected 4 values, one per node, found 3");
     const auto quads = quad_grid<double>({1, 1}, {1., 1.});
     CHECK(refusal([&] { (void)springs_along_edges(quads, {.second_ring = true}); }) ==
           "second_ring: expected triangles or tetrahedra, found quadrilateral");

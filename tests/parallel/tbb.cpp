@@ -33,14 +33,14 @@ TEST_CASE("a sum by chunks has the same bits on any number of threads") {
 }
 
 TEST_CASE("an exception thrown in a chunk reaches the caller") {
-    CHECK_THROWS_AS(parallel::tbb(2).for_chunks(10, 1,
-                                                [](Index chunk, Index, Index) {
-                                                    require(chunk != 7, "chunk", "any but 7", chunk);
-                                                }),
+    CHECK_THROWS_AS(parallel::tbb(2).for_chunks(
+                        10, 1, [](Index chunk, Index, Index) { require(chunk != 7, "chunk", "any but 7", chunk); }),
                     InvalidArgument);
 }
 
-TEST_CASE("a negative number of threads is refused") { CHECK_THROWS_AS((void)parallel::tbb(-1), InvalidArgument); }
+TEST_CASE("a negative number of threads is refused") {
+    CHECK_THROWS_AS((void)parallel::tbb(-1), InvalidArgument);
+}
 
 TEST_CASE("bodies step with the same bits on any number of threads") {
     const auto mesh = tetrahedron_grid<double>({32, 32, 32}, {1., 1., 1.}); // two domains

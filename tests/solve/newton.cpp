@@ -35,8 +35,9 @@ TEST_CASE_TEMPLATE("a clique matrix adds what dense blocks add", T, SPRINGFIT_TE
         sparse.add(static_cast<Index>(c), block);
         for (int b = 0; b < 4; ++b) {
             for (int a = 0; a < 4; ++a) {
-                dense.block(dim * cliques[c][static_cast<std::size_t>(a)], dim * cliques[c][static_cast<std::size_t>(b)],
-                            dim, dim) += block.block(dim * a, dim * b, dim, dim);
+                dense.block(dim * cliques[c][static_cast<std::size_t>(a)],
+                            dim * cliques[c][static_cast<std::size_t>(b)], dim, dim) +=
+                    block.block(dim * a, dim * b, dim, dim);
             }
         }
     }

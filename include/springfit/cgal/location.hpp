@@ -31,9 +31,9 @@ struct SurfacePlace {
 
 /// Answers where points lie in a mesh: which cell holds a point, and which point of the surface is nearest.
 ///
-/// The surface is the boundary of a mesh that fills its dimension, and the whole of a membrane; four-cornered facets are
-/// taken as two triangles, curved ones by their corners. It keeps a copy of the mesh and two search trees: building is
-/// O(cells log cells), a query O(log cells) as a rule; queries from several threads at once are fine.
+/// The surface is the boundary of a mesh that fills its dimension, and the whole of a membrane; four-cornered facets
+/// are taken as two triangles, curved ones by their corners. It keeps a copy of the mesh and two search trees: building
+/// is O(cells log cells), a query O(log cells) as a rule; queries from several threads at once are fine.
 template <int Dim, std::floating_point Scalar, CellType Cell>
 class Locator {
 public:
@@ -58,7 +58,8 @@ public:
 private:
     static constexpr bool membrane = is_membrane<Dim, Scalar, Cell>;
     static constexpr int n_piece_corners = Cell::dimension == 2 && !membrane ? 2 : 3;
-    using Piece = std::conditional_t<n_piece_corners == 2, detail::PlainKernel::Segment_3, detail::PlainKernel::Triangle_3>;
+    using Piece =
+        std::conditional_t<n_piece_corners == 2, detail::PlainKernel::Segment_3, detail::PlainKernel::Triangle_3>;
 
     /// A triangle or segment of a facet: three (two) of the facet's corners.
     struct FacetPiece {

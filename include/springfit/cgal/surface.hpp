@@ -68,8 +68,9 @@ inline SurfaceExamination require_solid(const TriangleSurface& surface, std::str
     require(found.holes == 0, name, "a closed surface",
             text("an open one: ", found.boundary_edges, " boundary edges around ", found.holes,
                  found.holes == 1 ? " hole" : " holes"));
-    require(found.self_intersections == 0, name, "a surface that does not cross itself",
-            text(found.self_intersections, found.self_intersections == 1 ? " pair" : " pairs", " of intersecting faces"));
+    require(
+        found.self_intersections == 0, name, "a surface that does not cross itself",
+        text(found.self_intersections, found.self_intersections == 1 ? " pair" : " pairs", " of intersecting faces"));
     require(found.bounds_volume, name, "a surface that bounds a volume", text("volume ", found.volume));
     return found;
 }
@@ -78,8 +79,8 @@ inline SurfaceExamination require_solid(const TriangleSurface& surface, std::str
 
 /// A repaired copy of a surface; closed ones come back with their normals outwards.
 ///
-/// Throws InvalidArgument for arrays that do not fit together, for coordinates that are not finite, and where nothing but
-/// degenerate triangles was given. O(n log n).
+/// Throws InvalidArgument for arrays that do not fit together, for coordinates that are not finite, and where nothing
+/// but degenerate triangles was given. O(n log n).
 [[nodiscard]] inline Surface repair(const Surface& surface, const RepairOptions& options = {}) {
     return detail::to_arrays(detail::repaired(surface, options));
 }

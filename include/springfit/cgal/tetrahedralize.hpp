@@ -14,12 +14,13 @@ struct TetrahedralizeOptions {
     double cell_size = 0;         ///< wanted mean edge length, m, > 0
     Index n_nodes = 0;            ///< wanted number of nodes, >= 4; met within 10 % where shape and sharp edges allow
     double sharp_edge_angle = 60; ///< edges whose faces' normals differ by more are kept, degrees, in (0, 180]
-    double surface_distance = 0;  ///< farthest that the mesh's surface lies from the given one, m, >= 0; 0: cell_size / 5
-    double sliver_angle = 12;     ///< dihedral angles below this are removed as far as possible, degrees, >= 0; 0: none
-    bool several_pieces = false;  ///< accept a mesh of several pieces that no face joins; if not, crumbs are left out
-    unsigned seed = 0;            ///< of the mesher's random numbers; the same seed gives the same mesh
-    RepairOptions repair{};       ///< of the surface, before it is meshed
-    ProgressCallback progress{};  ///< called after each meshing; returning false takes the best mesh so far as it is
+    double surface_distance =
+        0;                    ///< farthest that the mesh's surface lies from the given one, m, >= 0; 0: cell_size / 5
+    double sliver_angle = 12; ///< dihedral angles below this are removed as far as possible, degrees, >= 0; 0: none
+    bool several_pieces = false; ///< accept a mesh of several pieces that no face joins; if not, crumbs are left out
+    unsigned seed = 0;           ///< of the mesher's random numbers; the same seed gives the same mesh
+    RepairOptions repair{};      ///< of the surface, before it is meshed
+    ProgressCallback progress{}; ///< called after each meshing; returning false takes the best mesh so far as it is
 };
 
 namespace detail {
@@ -79,10 +80,9 @@ void check_result(const Mesh<3, Scalar, Tet4>& mesh, const TetrahedralizeOptions
     const auto nodes_at = [&](double h) { return 1.4 * volume / (h * h * h) + 0.6 * area / (h * h); };
     auto complex = options.cell_size > 0
                        ? mesh_at(options.cell_size)
-                       : mesh_with_nodes(
-                             options.n_nodes,
-                             size_where(nodes_at, static_cast<double>(options.n_nodes), std::cbrt(volume)), 3, mesh_at,
-                             count_nodes, [&](double share) { return report(0.7 * share); });
+                       : mesh_with_nodes(options.n_nodes,
+                                         size_where(nodes_at, static_cast<double>(options.n_nodes), std::cbrt(volume)),
+                                         3, mesh_at, count_nodes, [&](double share) { return report(0.7 * share); });
     if (!interrupted && report(0.7) && options.sliver_angle > 0) {
         mesher.remove_slivers(complex, options.sliver_angle);
     }
@@ -112,10 +112,10 @@ template <std::floating_point Scalar>
 
 /// Cuts the inside of a closed surface into tetrahedra by Delaunay refinement, its sharp edges kept.
 ///
-/// The same input gives the same mesh. Throws InvalidArgument for an option out of range, for a surface that does not bound
-/// a solid (open, self-intersecting, without volume: what is wrong and how many), where no tetrahedron fits, and where the
-/// mesh falls into pieces (those below 1 % of the volume are left out). O(n_nodes log n_nodes) per meshing, of which a
-/// wanted `n_nodes` takes two or three as a rule.
+/// The same input gives the same mesh. Throws InvalidArgument for an option out of range, for a surface that does not
+/// bound a solid (open, self-intersecting, without volume: what is wrong and how many), where no tetrahedron fits, and
+/// where the mesh falls into pieces (those below 1 % of the volume are left out). O(n_nodes log n_nodes) per meshing,
+/// of which a wanted `n_nodes` takes two or three as a rule.
 template <std::floating_point Scalar>
 [[nodiscard]] Mesh<3, Scalar, Tet4> tetrahedralize(const Surface& surface, const TetrahedralizeOptions& options) {
     detail::check(options);

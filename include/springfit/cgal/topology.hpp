@@ -29,17 +29,17 @@ struct DartItems {
 
 } // namespace detail
 
-/// Neighbourhood queries of a mesh of linear cells, on a combinatorial map: of dimension 2 for triangles and quadrilaterals
-/// (in the plane or as a membrane), of dimension 3 for tetrahedra and hexahedra.
+/// Neighbourhood queries of a mesh of linear cells, on a combinatorial map: of dimension 2 for triangles and
+/// quadrilaterals (in the plane or as a membrane), of dimension 3 for tetrahedra and hexahedra.
 ///
-/// Lists of nodes and cells come back ascending. Building is O(cells log cells) with about 0.8 kB per tetrahedron; a query
-/// costs what it visits.
+/// Lists of nodes and cells come back ascending. Building is O(cells log cells) with about 0.8 kB per tetrahedron; a
+/// query costs what it visits.
 template <CellType Cell>
     requires(Cell::n_nodes == Cell::n_corners)
 class Topology {
 public:
-    /// Throws InvalidArgument for a mesh that is not valid, a facet shared by more than two cells, and cells that share a
-    /// facet but are not oriented alike.
+    /// Throws InvalidArgument for a mesh that is not valid, a facet shared by more than two cells, and cells that share
+    /// a facet but are not oriented alike.
     template <int Dim, std::floating_point Scalar>
     explicit Topology(const Mesh<Dim, Scalar, Cell>& mesh);
 
@@ -98,7 +98,8 @@ private:
     /// Calls `visit(dart)` for every dart that starts at the node.
     template <class Visit>
     void at_node(int node, const Visit& visit) const {
-        for (int d = m_first_dart[static_cast<std::size_t>(node)]; d < m_first_dart[static_cast<std::size_t>(node) + 1]; ++d) {
+        for (int d = m_first_dart[static_cast<std::size_t>(node)]; d < m_first_dart[static_cast<std::size_t>(node) + 1];
+             ++d) {
             visit(m_darts_of_node[static_cast<std::size_t>(d)]);
         }
     }

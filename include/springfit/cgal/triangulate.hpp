@@ -30,8 +30,8 @@ struct TriangulateOptions {
 
 /// An outline with points given twice merged, segments given twice and those without length dropped.
 ///
-/// Throws InvalidArgument, naming `name`: for an outline that is empty, that has a coordinate that is not finite, that is
-/// open (how many loose ends), or whose segments cross, touch or overlap (how many pairs). O(n log n).
+/// Throws InvalidArgument, naming `name`: for an outline that is empty, that has a coordinate that is not finite, that
+/// is open (how many loose ends), or whose segments cross, touch or overlap (how many pairs). O(n log n).
 [[nodiscard]] inline Outline checked(const Outline& outline, std::string_view name = "outline") {
     require(outline.points.allFinite() && outline.holes.allFinite(), name, "finite coordinates",
             "one that is not finite");
@@ -47,7 +47,8 @@ struct TriangulateOptions {
                                       text(i, " in segment ", s));
             }
             ends[static_cast<std::size_t>(e)] =
-                number.insert({{outline.points(0, i), outline.points(1, i)}, static_cast<int>(number.size())}).first->second;
+                number.insert({{outline.points(0, i), outline.points(1, i)}, static_cast<int>(number.size())})
+                    .first->second;
         }
         if (ends[0] != ends[1]) {
             segments.push_back(ends);
@@ -69,13 +70,15 @@ struct TriangulateOptions {
         ++n_segments_at[unique(0, s)];
         ++n_segments_at[unique(1, s)];
     }
-    const auto loose = std::count_if(n_segments_at.begin(), n_segments_at.end(), [](const auto& at) { return at.second == 1; });
+    const auto loose =
+        std::count_if(n_segments_at.begin(), n_segments_at.end(), [](const auto& at) { return at.second == 1; });
     if (loose > 0) {
-        const int first =
-            std::find_if(n_segments_at.begin(), n_segments_at.end(), [](const auto& at) { return at.second == 1; })->first;
+        const int first = std::find_if(n_segments_at.begin(), n_segments_at.end(), [](const auto& at) {
+                              return at.second == 1;
+                          })->first;
         throw InvalidArgument(name, "a closed outline",
-                              text("an open one: ", loose, loose == 1 ? " loose end" : " loose ends", ", the first at (",
-                                   result.points.col(first).transpose(), ")"));
+                              text("an open one: ", loose, loose == 1 ? " loose end" : " loose ends",
+                                   ", the first at (", result.points.col(first).transpose(), ")"));
     }
     const Index crossings = detail::count_crossings(graph);
     require(crossings == 0, name, "segments that meet at their ends only",

@@ -32,9 +32,8 @@ struct CauchySplit {
 /// O(cells log springs).
 template <int Dim, std::floating_point Scalar, SimplexCell Cell>
     requires(Cell::dimension == Dim)
-    [[nodiscard]] CauchySplit<Scalar> cauchy_split(const Mesh<Dim, Scalar, Cell>& mesh, const NodePairs& springs,
-                                                   const IsotropicSolid& solid,
-                                                   const CauchySplitOptions& options = {}) {
+[[nodiscard]] CauchySplit<Scalar> cauchy_split(const Mesh<Dim, Scalar, Cell>& mesh, const NodePairs& springs,
+                                               const IsotropicSolid& solid, const CauchySplitOptions& options = {}) {
     const auto constants = detail::constants<Dim, Cell, Scalar>(solid);
     const Scalar mu = constants.mu;
     const Scalar young = (Dim == 2 ? Scalar(8) / 3 : Scalar(5) / 2) * mu;

@@ -22,9 +22,9 @@ struct BiquadraticCoefficients {
 ///
 /// Throws InvalidArgument for a material out of range and an inverted triangle. O(triangles).
 template <int Dim, std::floating_point Scalar, SimplexCell Cell>
-requires(Cell::dimension == 2)
-    [[nodiscard]] BiquadraticCoefficients<Scalar> delingette(const Mesh<Dim, Scalar, Cell>& mesh,
-                                                             const IsotropicSolid& solid) {
+    requires(Cell::dimension == 2)
+[[nodiscard]] BiquadraticCoefficients<Scalar> delingette(const Mesh<Dim, Scalar, Cell>& mesh,
+                                                         const IsotropicSolid& solid) {
     const auto constants = detail::constants<Dim, Cell, Scalar>(solid);
     const Scalar l = constants.lambda;
     const Scalar m = 2 * constants.mu;

@@ -71,7 +71,7 @@ private:
     Nodes m_damping_at;
     SymmetricSolver<Scalar> m_solver;
     State<dimension, Scalar> m_last; ///< the state left by the last step, its acceleration that of the method (A)
-    Scalar m_stiffest = 0; ///< largest diagonal entry of the stiffness at rest, N/m
+    Scalar m_stiffest = 0;           ///< largest diagonal entry of the stiffness at rest, N/m
     int m_iterations = 0;
 };
 

@@ -94,10 +94,10 @@ Vector<Dim, double> area_vector(const Eigen::Matrix<double, Dim, Dim - 1>& jacob
 /// `traction` in N/m^2 on solids; in the plane and on the rim of a membrane facets are edges, and it is in N per m of
 /// edge (the traction times the thickness). The force is dead: it does not follow the surface. O(facets log facets).
 template <int Dim, std::floating_point Scalar, FiniteElementCell Cell>
-[[nodiscard]] NodalLoad<Dim, Scalar>
-surface_traction(const Mesh<Dim, Scalar, Cell>& mesh, const std::vector<Facet<Cell>>& facets,
-                 const std::type_identity_t<Vector<Dim, Scalar>>& traction,
-                 std::type_identity_t<Amplitude<Scalar>> amplitude = {}) {
+[[nodiscard]] NodalLoad<Dim, Scalar> surface_traction(const Mesh<Dim, Scalar, Cell>& mesh,
+                                                      const std::vector<Facet<Cell>>& facets,
+                                                      const std::type_identity_t<Vector<Dim, Scalar>>& traction,
+                                                      std::type_identity_t<Amplitude<Scalar>> amplitude = {}) {
     require(traction.allFinite(), "traction", "finite components", traction.transpose());
     std::map<int, Vector<Dim, double>> forces;
     for (const auto& facet : facets) {
@@ -113,10 +113,9 @@ surface_traction(const Mesh<Dim, Scalar, Cell>& mesh, const std::vector<Facet<Ce
 /// normals nor areas follow the deformation). N/m^2 on solids, N per m of edge in the plane.
 template <int Dim, std::floating_point Scalar, FiniteElementCell Cell>
     requires(Dim == Cell::dimension)
-[[nodiscard]] NodalLoad<Dim, Scalar> pressure(const Mesh<Dim, Scalar, Cell>& mesh,
-                                              const std::vector<Facet<Cell>>& facets,
-                                              std::type_identity_t<Scalar> value,
-                                              std::type_identity_t<Amplitude<Scalar>> amplitude = {}) {
+[[nodiscard]] NodalLoad<Dim, Scalar>
+pressure(const Mesh<Dim, Scalar, Cell>& mesh, const std::vector<Facet<Cell>>& facets,
+         std::type_identity_t<Scalar> value, std::type_identity_t<Amplitude<Scalar>> amplitude = {}) {
     require(std::isfinite(value), "pressure", "a finite value", value);
     std::map<int, Vector<Dim, double>> forces;
     for (const auto& facet : facets) {
@@ -145,9 +144,8 @@ template <std::floating_point Scalar, FiniteElementCell Cell>
 
 /// Nodal forces of a force per rest volume, f_a = int N_a b(X) dV: `field(X)` in N/m^3 at a rest position X.
 template <class M, class Field>
-    requires std::convertible_to<
-        std::invoke_result_t<const Field&, const Vector<M::dimension, typename M::Scalar>&>,
-        Vector<M::dimension, typename M::Scalar>>
+    requires std::convertible_to<std::invoke_result_t<const Field&, const Vector<M::dimension, typename M::Scalar>&>,
+                                 Vector<M::dimension, typename M::Scalar>>
 [[nodiscard]] NodalLoad<M::dimension, typename M::Scalar>
 body_force(const M& model, const Field& field, std::type_identity_t<Amplitude<typename M::Scalar>> amplitude = {}) {
     constexpr int dim = M::dimension;

@@ -38,7 +38,7 @@ struct AccelerationOptions {
 /// bytes per node and 32 frames of the motion. Cost per frame: sum over nodes of unknowns^2. Sums are in double
 /// whatever the Scalar of the data, and do not depend on the number of threads.
 template <int Dim, std::floating_point Scalar>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 class AccelerationObjective {
 public:
     /// Throws InvalidArgument where the network or an option is not valid.

@@ -20,12 +20,12 @@ struct OnePassOptions {
 };
 
 struct DominantTermOptions {
-    int max_sweeps = 50;                      ///< budget, >= 0
-    double tolerance = 1e-9;                  ///< stop when `kkt_residual` is not above it
+    int max_sweeps = 50;     ///< budget, >= 0
+    double tolerance = 1e-9; ///< stop when `kkt_residual` is not above it
     SweepStart start = SweepStart::one_pass;
-    Values<double> initial{};                 ///< moved into the bounds [n_unknowns]
-    Execution execution{};                    ///< for the one pass
-    ProgressCallback progress{};              ///< called after every sweep
+    Values<double> initial{};    ///< moved into the bounds [n_unknowns]
+    Execution execution{};       ///< for the one pass
+    ProgressCallback progress{}; ///< called after every sweep
 };
 
 /// The dominant-term approximation, one pass: each node term is minimised on its own over the unknowns at the node,

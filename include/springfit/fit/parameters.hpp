@@ -27,8 +27,8 @@ struct KindOptions {
     /// Lower bound; -infinity where there is none.
     double lower = Kind == ParameterKind::preload ? -std::numeric_limits<double>::infinity() : 0;
     double upper = std::numeric_limits<double>::infinity(); ///< upper bound, >= lower
-    std::vector<int> ties;  ///< group of each spring [n_springs], springs of one group share one value; empty: no ties
-    Values<double> prior;   ///< what a spring gets that no motion excites [n_springs]; empty: the network's value
+    std::vector<int> ties; ///< group of each spring [n_springs], springs of one group share one value; empty: no ties
+    Values<double> prior;  ///< what a spring gets that no motion excites [n_springs]; empty: the network's value
 };
 
 /// Which values of the springs are unknown.

@@ -46,8 +46,8 @@ private:
     struct File {
         std::filesystem::path target;
         std::filesystem::path temporary; ///< empty: there is to be no such file
-        std::filesystem::path backup; ///< what had the name before, while the renaming is under way
-        bool renamed = false; ///< or removed
+        std::filesystem::path backup;    ///< what had the name before, while the renaming is under way
+        bool renamed = false;            ///< or removed
     };
     void flush() const;
     void back_up(File& file) const;

@@ -19,8 +19,8 @@ struct Model {
     SpringNetwork<Dim, Scalar> network;
     /// How far data set each spring's stiffness, in [0, 1], below 1/2 the prior did [n_springs]; empty: not known.
     Values<Scalar> data_share{};
-    std::vector<int> fixed;           ///< nodes that were clamped, ascending, each once
-    Scalar stable_time_step = 0;      ///< the largest step that explicit integration is sure to stand, s, > 0
+    std::vector<int> fixed;      ///< nodes that were clamped, ascending, each once
+    Scalar stable_time_step = 0; ///< the largest step that explicit integration is sure to stand, s, > 0
     std::optional<CarriedSurface<Dim, Scalar>> surface{}; ///< finer than the network, for display
     Json provenance = Json::object(); ///< how the model came about: program version, method, material, ...
 };

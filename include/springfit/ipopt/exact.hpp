@@ -13,10 +13,10 @@ namespace springfit::ipopt {
 struct ExactOptions {
     /// KKT residual up to which the status is `converged`, in (0, 1); elsewhere it is `stalled`.
     double tolerance = 1e-9;
-    int max_iterations = 200;          ///< >= 0
-    Values<double> initial{};          ///< start, moved into the bounds [n_unknowns]; empty: the prior
-    int print_level = 0;               ///< what Ipopt writes to standard output, 0 (nothing) to 12
-    ProgressCallback progress{};       ///< called once per iteration
+    int max_iterations = 200;    ///< >= 0
+    Values<double> initial{};    ///< start, moved into the bounds [n_unknowns]; empty: the prior
+    int print_level = 0;         ///< what Ipopt writes to standard output, 0 (nothing) to 12
+    ProgressCallback progress{}; ///< called once per iteration
     /// Further options of Ipopt by its own names; they win over what this header sets.
     std::map<std::string, std::variant<std::string, double, int>> ipopt{};
 };

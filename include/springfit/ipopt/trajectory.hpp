@@ -27,12 +27,12 @@ struct TrajectoryFitOptions {
 /// Trajectory matching by Ipopt's interior-point method [Waechter2006] with the exact adjoint gradient and a
 /// limited-memory Hessian: the problem of `gauss_newton`, for many unknowns and for bounds that bind.
 ///
-/// Starts where `gauss_newton` does. Unknowns are scaled to unit curvature there and the objective to a largest gradient of 1. A
-/// trial point that is singular, unstable or does not come to balance is backtracked from; static equilibria are looked
-/// for next to those of the best point so far. What is returned is the best stable point that was simulated, never
-/// worse than the prior, within the bounds to the last bit and on a bound where that is better; `status` is `failed`
-/// where there is nothing to start from. `history` is J of Ipopt's iterates, which need not fall each time. An
-/// exception from the callback ends the solve and is thrown on.
+/// Starts where `gauss_newton` does. Unknowns are scaled to unit curvature there and the objective to a largest
+/// gradient of 1. A trial point that is singular, unstable or does not come to balance is backtracked from; static
+/// equilibria are looked for next to those of the best point so far. What is returned is the best stable point that was
+/// simulated, never worse than the prior, within the bounds to the last bit and on a bound where that is better;
+/// `status` is `failed` where there is nothing to start from. `history` is J of Ipopt's iterates, which need not fall
+/// each time. An exception from the callback ends the solve and is thrown on.
 ///
 /// Throws InvalidArgument for an option out of range or one that Ipopt refuses. Cost per trial point: one simulation of
 /// all cases, one adjoint, one factorisation per set of clamps; memory: that of two points, and 2 `memory` n_unknowns.

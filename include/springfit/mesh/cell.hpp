@@ -73,12 +73,25 @@ struct Hex8 {
     static constexpr int dimension = 3;
     static constexpr int n_nodes = 8;
     static constexpr int n_corners = 8;
-    static constexpr std::array<std::array<int, 2>, 12> edges{{{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6},
-                                                               {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}}};
+    static constexpr std::array<std::array<int, 2>, 12> edges{
+        {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}}};
     /// The twelve face diagonals, then the four body diagonals.
-    static constexpr std::array<std::array<int, 2>, 16> diagonals{{{0, 2}, {1, 3}, {4, 6}, {5, 7}, {0, 5}, {1, 4},
-                                                                   {1, 6}, {2, 5}, {2, 7}, {3, 6}, {3, 4}, {0, 7},
-                                                                   {0, 6}, {1, 7}, {2, 4}, {3, 5}}};
+    static constexpr std::array<std::array<int, 2>, 16> diagonals{{{0, 2},
+                                                                   {1, 3},
+                                                                   {4, 6},
+                                                                   {5, 7},
+                                                                   {0, 5},
+                                                                   {1, 4},
+                                                                   {1, 6},
+                                                                   {2, 5},
+                                                                   {2, 7},
+                                                                   {3, 6},
+                                                                   {3, 4},
+                                                                   {0, 7},
+                                                                   {0, 6},
+                                                                   {1, 7},
+                                                                   {2, 4},
+                                                                   {3, 5}}};
     static constexpr std::array<std::array<int, 4>, 6> facets{
         {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}};
 };

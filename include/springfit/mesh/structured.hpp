@@ -109,8 +109,8 @@ template <std::floating_point Scalar>
 [[nodiscard]] Mesh<2, Scalar, Tri3> equilateral_triangles(int columns, int rows, Scalar edge) {
     detail::check_grid<2, Scalar>({columns, rows}, {edge, edge});
     Mesh<2, Scalar, Tri3> mesh;
-    mesh.nodes = detail::grid_nodes<2, Scalar>({columns, rows}, {edge * static_cast<Scalar>(columns),
-                                                                 edge * static_cast<Scalar>(rows)});
+    mesh.nodes = detail::grid_nodes<2, Scalar>({columns, rows},
+                                               {edge * static_cast<Scalar>(columns), edge * static_cast<Scalar>(rows)});
     mesh.cells.resize(3, 2 * Index{columns} * rows);
     const Scalar height = edge * std::sqrt(Scalar(3)) / 2;
     for (Index i = 0; i < mesh.n_nodes(); ++i) {

@@ -92,9 +92,8 @@ void for_shared_facets(const Mesh<Dim, Scalar, Cell>& mesh, const Visit& visit) 
         order[i] = i;
         keys[i] = sorted_corners<Cell>(facets[i].corners);
     }
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return keys[a] != keys[b] ? keys[a] < keys[b] : a < b;
-    });
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return keys[a] != keys[b] ? keys[a] < keys[b] : a < b; });
     std::vector<Facet<Cell>> shared;
     for (std::size_t i = 0; i < order.size();) {
         shared.clear();

@@ -19,10 +19,10 @@ struct Motion {
     Points<Dim, Scalar> rest_positions; ///< [Dim x n_nodes], m
     std::vector<int> clamped;           ///< nodes whose motion is prescribed, ascending
 
-    std::vector<Scalar> times;                       ///< [n_frames], s
-    std::vector<Points<Dim, Scalar>> positions;      ///< n_frames of [Dim x n_nodes], m
-    std::vector<Points<Dim, Scalar>> velocities;     ///< m/s
-    std::vector<Points<Dim, Scalar>> accelerations;  ///< m/s^2
+    std::vector<Scalar> times;                        ///< [n_frames], s
+    std::vector<Points<Dim, Scalar>> positions;       ///< n_frames of [Dim x n_nodes], m
+    std::vector<Points<Dim, Scalar>> velocities;      ///< m/s
+    std::vector<Points<Dim, Scalar>> accelerations;   ///< m/s^2
     std::vector<Points<Dim, Scalar>> external_forces; ///< N
 
     [[nodiscard]] Index n_nodes() const { return rest_positions.cols(); }

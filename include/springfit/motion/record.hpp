@@ -8,17 +8,17 @@ namespace springfit {
 
 template <std::floating_point Scalar>
 struct RecordOptions {
-    Scalar dt = Scalar(0.01);  ///< time between frames, s, > 0
-    int frames = 50;           ///< frames to record, the start included, >= 1
-    int steps_per_frame = 1;   ///< steps of dt / steps_per_frame between two frames, >= 1
+    Scalar dt = Scalar(0.01);    ///< time between frames, s, > 0
+    int frames = 50;             ///< frames to record, the start included, >= 1
+    int steps_per_frame = 1;     ///< steps of dt / steps_per_frame between two frames, >= 1
     ProgressCallback progress{}; ///< called once per frame; returning false stops with the frames so far
 };
 
 /// What came of a recording.
 template <int Dim, std::floating_point Scalar>
 struct Recording {
-    Motion<Dim, Scalar> motion;          ///< every frame up to where the status says
-    Status status = Status::converged;   ///< `converged`, `interrupted`, or why the stepper could not go on
+    Motion<Dim, Scalar> motion;        ///< every frame up to where the status says
+    Status status = Status::converged; ///< `converged`, `interrupted`, or why the stepper could not go on
 };
 
 /// Records the motion of a stepper under a scenario. Throws InvalidArgument for a scenario that does not fit the body.
@@ -50,8 +50,7 @@ template <Stepper S>
         motion.positions.push_back(state.positions);
         motion.velocities.push_back(state.velocities);
         motion.accelerations.push_back(state.accelerations);
-        motion.external_forces.push_back(
-            external_forces<S::dimension, Scalar>(scenario, stepper.masses(), state.time));
+        motion.external_forces.push_back(external_forces<S::dimension, Scalar>(scenario, stepper.masses(), state.time));
         if (!go_on(options.progress, "record", static_cast<double>(frame + 1) / options.frames)) {
             recording.status = Status::interrupted;
             return recording;

@@ -51,8 +51,8 @@ Vector<Dim, Scalar> interpolated(const std::vector<Scalar>& times, const std::ve
 
 } // namespace detail
 
-/// The scenario that does to a body what was done in a recorded motion: its start, its external forces and the motion of
-/// its clamped nodes, linear in time between frames. Throws InvalidArgument for a motion without frames.
+/// The scenario that does to a body what was done in a recorded motion: its start, its external forces and the motion
+/// of its clamped nodes, linear in time between frames. Throws InvalidArgument for a motion without frames.
 ///
 /// Cost of one evaluation of its forces: O(nodes with forces) for the two frames around the time.
 template <int Dim, std::floating_point Scalar>

@@ -37,14 +37,15 @@ struct NodalLoad {
     Amplitude<Scalar> amplitude;
 };
 
-/// What is done to a body: one load case. It names nodes only, so the same scenario drives the reference and the network.
+/// What is done to a body: one load case. It names nodes only, so the same scenario drives the reference and the
+/// network.
 template <int Dim, std::floating_point Scalar>
 struct Scenario {
     std::string name;
     std::vector<Clamp<Dim, Scalar>> clamps;
     std::vector<Gravity<Dim, Scalar>> gravity;
     std::vector<NodalLoad<Dim, Scalar>> loads;
-    Points<Dim, Scalar> initial_positions; ///< [Dim x n_nodes], m; empty: the rest positions
+    Points<Dim, Scalar> initial_positions;  ///< [Dim x n_nodes], m; empty: the rest positions
     Points<Dim, Scalar> initial_velocities; ///< [Dim x n_nodes], m/s; empty: at rest
 };
 
@@ -110,9 +111,10 @@ void validate(const Scenario<Dim, Scalar>& scenario, Index n_nodes) {
         }
     }
     for (const auto* start : {&scenario.initial_positions, &scenario.initial_velocities}) {
-        require(start->size() == 0 || start->cols() == n_nodes, "initial state", text(n_nodes, " columns, one per node"),
-                start->cols());
-        require(start->size() == 0 || start->allFinite(), "initial state", "finite values", "a value that is not finite");
+        require(start->size() == 0 || start->cols() == n_nodes, "initial state",
+                text(n_nodes, " columns, one per node"), start->cols());
+        require(start->size() == 0 || start->allFinite(), "initial state", "finite values",
+                "a value that is not finite");
     }
 }
 

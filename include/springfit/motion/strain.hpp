@@ -94,11 +94,11 @@ template <int Dim, std::floating_point Scalar>
 /// comes about is another where the body answers nonlinearly, by some tens of percent at 0.15. Clamps that move add to
 /// the response but are not scaled: record them as they are. Throws InvalidArgument for arrays that do not fit.
 template <int Dim, std::floating_point Scalar, class Respond>
-requires std::convertible_to < std::invoke_result_t < const Respond&, const std::vector<Scenario<Dim, Scalar>>
-& >, std::vector < Points < Dim,
-    Scalar >>> std::vector<Scalar> scale_to_strain(std::vector<Scenario<Dim, Scalar>>& scenarios,
-                                                   const NodePairs& pairs, const Points<Dim, Scalar>& rest,
-                                                   std::type_identity_t<Scalar> strain, const Respond& respond) {
+    requires std::convertible_to<std::invoke_result_t<const Respond&, const std::vector<Scenario<Dim, Scalar>>&>,
+                                 std::vector<Points<Dim, Scalar>>>
+std::vector<Scalar> scale_to_strain(std::vector<Scenario<Dim, Scalar>>& scenarios, const NodePairs& pairs,
+                                    const Points<Dim, Scalar>& rest, std::type_identity_t<Scalar> strain,
+                                    const Respond& respond) {
     require(strain > 0 && strain < 1, "strain", "a value in (0, 1)", strain);
     const std::vector<Points<Dim, Scalar>> responses = respond(std::as_const(scenarios));
     require(responses.size() == scenarios.size(), "respond", text(scenarios.size(), " displacements, one per scenario"),

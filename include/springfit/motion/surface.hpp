@@ -25,7 +25,7 @@ template <int Dim, std::floating_point Scalar>
 
 /// A surface for display that the nodes of a network carry.
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 struct CarriedSurface {
     static constexpr int dimension = Dim;
     using Scalar = ScalarType;
@@ -79,9 +79,9 @@ template <int Dim, std::floating_point Scalar>
 ///
 /// Throws InvalidArgument where `at_nodes` has other targets than the mesh has nodes. O(cells log cells).
 template <int Dim, std::floating_point Scalar, CellType Cell>
-requires(Cell::dimension == Dim)
-    [[nodiscard]] CarriedSurface<Dim, Scalar> boundary_surface(const Mesh<Dim, Scalar, Cell>& mesh,
-                                                               const Interpolation<Scalar>& at_nodes) {
+    requires(Cell::dimension == Dim)
+[[nodiscard]] CarriedSurface<Dim, Scalar> boundary_surface(const Mesh<Dim, Scalar, Cell>& mesh,
+                                                           const Interpolation<Scalar>& at_nodes) {
     require(at_nodes.n_targets() == mesh.n_nodes(), "at_nodes", text(mesh.n_nodes(), " targets, the mesh's nodes"),
             at_nodes.n_targets());
     const auto facets = boundary_facets(mesh);

@@ -20,7 +20,7 @@ using TriangleValues = Eigen::Matrix<Scalar, 3, Eigen::Dynamic>;
 /// which forces along its edges can balance, as those of springs do. `damping` beta adds beta dD/dt to D in the forces:
 /// damping in proportion to the stiffness. `delingette` gives the coefficients of a material.
 template <int Dim, std::floating_point ScalarType>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 struct BiquadraticNetwork {
     static constexpr int dimension = Dim;
     using Scalar = ScalarType;
@@ -79,9 +79,9 @@ struct BiquadraticOptions {
 ///
 /// The nodes are those of `corner_mesh(mesh)`. Throws InvalidArgument for a mesh or an option that cannot be used.
 template <int Dim, std::floating_point Scalar, SimplexCell Cell>
-requires(Cell::dimension == 2)
-    [[nodiscard]] BiquadraticNetwork<Dim, Scalar> biquadratic_network(const Mesh<Dim, Scalar, Cell>& mesh,
-                                                                      const BiquadraticOptions<Scalar>& options = {}) {
+    requires(Cell::dimension == 2)
+[[nodiscard]] BiquadraticNetwork<Dim, Scalar> biquadratic_network(const Mesh<Dim, Scalar, Cell>& mesh,
+                                                                  const BiquadraticOptions<Scalar>& options = {}) {
     validate(mesh);
     const auto corners = corner_mesh(mesh);
     BiquadraticNetwork<Dim, Scalar> network;

@@ -16,7 +16,8 @@ using PlainKernel = CGAL::Simple_cartesian<double>;
 /// A point in the plane or in space as CGAL's point in space.
 template <class Derived>
 [[nodiscard]] PlainKernel::Point_3 plain_point(const Eigen::MatrixBase<Derived>& p) {
-    return {static_cast<double>(p(0)), static_cast<double>(p(1)), p.size() == 3 ? static_cast<double>(p(p.size() - 1)) : 0.};
+    return {static_cast<double>(p(0)), static_cast<double>(p(1)),
+            p.size() == 3 ? static_cast<double>(p(p.size() - 1)) : 0.};
 }
 
 /// The shape of one number in a search tree: a cell's box, a facet's triangle or segment.

@@ -31,8 +31,9 @@ inline double smallest_dihedral(const Solid& mesh, Index cell) {
     return std::acos(std::min(1., largest_cosine)) * 180 / EIGEN_PI;
 }
 
-/// Takes off flakes: cells with a dihedral angle below `angle` (degrees) and two faces or more on the surface, again and
-/// again. They hold next to no volume, and the mesher can neither move nor reweight nodes on sharp edges to mend them.
+/// Takes off flakes: cells with a dihedral angle below `angle` (degrees) and two faces or more on the surface, again
+/// and again. They hold next to no volume, and the mesher can neither move nor reweight nodes on sharp edges to mend
+/// them.
 [[nodiscard]] inline Solid without_flakes(Solid mesh, double angle) {
     while (true) {
         std::vector<int> on_surface(static_cast<std::size_t>(mesh.n_cells()), 0);

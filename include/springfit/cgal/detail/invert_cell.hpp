@@ -18,10 +18,11 @@ struct CellCoordinates {
     bool found = false;                              ///< whether xi was found
 };
 
-/// Solves sum_a N_a(xi) x_a = p for xi by Newton's method from the middle of the cell: one step in simplices with straight
-/// edges. In a surface cell in space, the point of the cell's surface where Gauss-Newton finds p nearest.
+/// Solves sum_a N_a(xi) x_a = p for xi by Newton's method from the middle of the cell: one step in simplices with
+/// straight edges. In a surface cell in space, the point of the cell's surface where Gauss-Newton finds p nearest.
 template <int Dim, std::floating_point Scalar, CellType Cell>
-[[nodiscard]] CellCoordinates<Cell> invert(const Mesh<Dim, Scalar, Cell>& mesh, Index cell, const Vector<Dim, double>& p) {
+[[nodiscard]] CellCoordinates<Cell> invert(const Mesh<Dim, Scalar, Cell>& mesh, Index cell,
+                                           const Vector<Dim, double>& p) {
     constexpr int dim = Cell::dimension;
     constexpr bool simplex = Cell::n_corners == dim + 1;
     constexpr int max_steps = 30;

@@ -50,10 +50,10 @@ inline Index count_crossings(const PlaneGraph& graph) {
                 }
             }
         }
-        crossings += CGAL::do_intersect(Kernel::Segment_2(point(s[0]), point(s[1])),
-                                        Kernel::Segment_2(point(t[0]), point(t[1])))
-                         ? 1
-                         : 0;
+        crossings +=
+            CGAL::do_intersect(Kernel::Segment_2(point(s[0]), point(s[1])), Kernel::Segment_2(point(t[0]), point(t[1])))
+                ? 1
+                : 0;
     });
     return crossings;
 }
@@ -72,7 +72,8 @@ public:
             vertices.push_back(m_triangulation.insert(point));
         }
         for (const auto& [a, b] : graph.segments) {
-            m_triangulation.insert_constraint(vertices[static_cast<std::size_t>(a)], vertices[static_cast<std::size_t>(b)]);
+            m_triangulation.insert_constraint(vertices[static_cast<std::size_t>(a)],
+                                              vertices[static_cast<std::size_t>(b)]);
         }
         for (const auto face : m_triangulation.all_face_handles()) {
             face->set_in_domain(true);
@@ -103,8 +104,9 @@ public:
                 continue;
             }
             Face largest = start;
-            for_region(start, [&](Face next) { return seen.emplace(&*next, true).second; },
-                       [&](Face face) { largest = area(face) > area(largest) ? face : largest; });
+            for_region(
+                start, [&](Face next) { return seen.emplace(&*next, true).second; },
+                [&](Face face) { largest = area(face) > area(largest) ? face : largest; });
             points.push_back(CGAL::centroid(m_triangulation.triangle(largest)));
         }
         return points;
@@ -168,8 +170,9 @@ private:
     [[nodiscard]] bool is_outside(Face face) const {
         bool outside = false;
         std::unordered_map<const void*, bool> seen{{&*face, true}};
-        for_region(face, [&](Face next) { return seen.emplace(&*next, true).second; },
-                   [&](Face at) { outside = outside || m_triangulation.is_infinite(at); });
+        for_region(
+            face, [&](Face next) { return seen.emplace(&*next, true).second; },
+            [&](Face at) { outside = outside || m_triangulation.is_infinite(at); });
         return outside;
     }
 

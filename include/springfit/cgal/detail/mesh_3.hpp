@@ -17,8 +17,8 @@
 
 namespace springfit::cgal::detail {
 
-/// Delaunay refinement of the inside of one closed surface, its sharp edges kept; meshes it again and again at different
-/// sizes. The random numbers start alike for every meshing, so the same size gives the same mesh.
+/// Delaunay refinement of the inside of one closed surface, its sharp edges kept; meshes it again and again at
+/// different sizes. The random numbers start alike for every meshing, so the same size gives the same mesh.
 class SolidMesher {
 public:
     using Polyhedron = CGAL::Mesh_polyhedron_3<Kernel>::type;

@@ -112,8 +112,8 @@ inline OutlineFile read_poly(const std::filesystem::path& path) {
     return outline;
 }
 
-/// Reads well-known text: any number of POLYGON and MULTIPOLYGON, over any number of lines. (CGAL's own reader wants each on
-/// one line and closes open rings without a word.)
+/// Reads well-known text: any number of POLYGON and MULTIPOLYGON, over any number of lines. (CGAL's own reader wants
+/// each on one line and closes open rings without a word.)
 inline OutlineFile read_wkt(const std::filesystem::path& path) {
     const std::string name = path.string();
     std::ifstream stream(path);
@@ -163,9 +163,9 @@ inline OutlineFile read_wkt(const std::filesystem::path& path) {
                     return;
                 }
                 if (ring.front().x() != ring.back().x() || ring.front().y() != ring.back().y()) {
-                    throw FileError(name, at, text(which, " is open: it starts at (", ring.front().x(), " ",
-                                                   ring.front().y(), ") and ends at (", ring.back().x(), " ",
-                                                   ring.back().y(), ")"));
+                    throw FileError(name, at,
+                                    text(which, " is open: it starts at (", ring.front().x(), " ", ring.front().y(),
+                                         ") and ends at (", ring.back().x(), " ", ring.back().y(), ")"));
                 }
                 for (std::size_t i = 0; i + 1 < ring.size(); ++i) {
                     const int n = static_cast<int>(outline.points.size());

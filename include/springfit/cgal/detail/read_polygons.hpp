@@ -104,7 +104,8 @@ inline PolygonSoup read_polygons(const std::filesystem::path& path) {
         }
     }
     if (soup.points.empty() || soup.polygons.empty()) {
-        throw FileError(name, text("empty surface: ", soup.points.size(), " vertices, ", soup.polygons.size(), " faces"));
+        throw FileError(name,
+                        text("empty surface: ", soup.points.size(), " vertices, ", soup.polygons.size(), " faces"));
     }
     return soup;
 }

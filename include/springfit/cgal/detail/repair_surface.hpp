@@ -43,8 +43,8 @@ inline Index hole_edges(const TriangleSurface& surface, TriangleSurface::Halfedg
     return n;
 }
 
-/// Merges points, orients and stitches the polygons, cuts them into triangles, drops degenerate ones, fills the holes of
-/// at most `max_hole_edges` edges, and turns a closed surface outwards.
+/// Merges points, orients and stitches the polygons, cuts them into triangles, drops degenerate ones, fills the holes
+/// of at most `max_hole_edges` edges, and turns a closed surface outwards.
 inline TriangleSurface repaired(PolygonSoup soup, int max_hole_edges) {
     namespace pmp = CGAL::Polygon_mesh_processing;
     pmp::repair_polygon_soup(soup.points, soup.polygons);

@@ -41,7 +41,8 @@ public:
             dropped = false;
             for (Vertex v = 0; v < m_neighbours.size(); ++v) {
                 if (m_neighbours[v].size() == 1) {
-                    const auto line = walk(v, m_neighbours[v][0], [&](Vertex w) { return m_neighbours[w].size() != 2; });
+                    const auto line =
+                        walk(v, m_neighbours[v][0], [&](Vertex w) { return m_neighbours[w].size() != 2; });
                     if (m_neighbours[line.back()].size() > 2 && length(line) < branch) {
                         drop(line);
                         dropped = true;

@@ -49,10 +49,10 @@ template <std::floating_point Scalar>
     const auto triangulation =
         options.cell_size > 0
             ? mesh_at(options.cell_size)
-            : mesh_with_nodes(options.n_nodes,
-                              size_where(nodes_at, static_cast<double>(options.n_nodes), std::sqrt(area)), 2, mesh_at,
-                              [](const PlaneMesher::Triangulation& mesh) { return count_nodes(mesh); },
-                              [&](double share) { return go_on(options.progress, "mesh", 0.9 * share); });
+            : mesh_with_nodes(
+                  options.n_nodes, size_where(nodes_at, static_cast<double>(options.n_nodes), std::sqrt(area)), 2,
+                  mesh_at, [](const PlaneMesher::Triangulation& mesh) { return count_nodes(mesh); },
+                  [&](double share) { return go_on(options.progress, "mesh", 0.9 * share); });
     (void)go_on(options.progress, "mesh", 1);
     auto mesh = to_mesh<Scalar>(triangulation);
     if (!options.several_pieces) {

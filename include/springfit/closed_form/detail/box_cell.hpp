@@ -7,8 +7,8 @@ namespace springfit::detail {
 
 /// Side lengths of a rectangle or box along its corners 0-1, 0-3 and 0-4; throws InvalidArgument for any other shape.
 template <int Dim, std::floating_point Scalar, CellType Cell>
-requires std::same_as<Cell, Quad4> || std::same_as<Cell, Hex8> Vector<Cell::dimension, Scalar>
-box_sides(const Mesh<Dim, Scalar, Cell>& mesh, Index cell) {
+    requires std::same_as<Cell, Quad4> || std::same_as<Cell, Hex8>
+Vector<Cell::dimension, Scalar> box_sides(const Mesh<Dim, Scalar, Cell>& mesh, Index cell) {
     constexpr int d = Cell::dimension;
     constexpr int neighbours[3] = {1, 3, 4};
     constexpr int steps[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},

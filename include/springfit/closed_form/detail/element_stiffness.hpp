@@ -21,7 +21,7 @@ auto element_stiffness(const Mesh<Dim, Scalar, Cell>& mesh, Index cell, const El
     const auto lambda = static_cast<double>(constants.lambda);
     const auto mu = static_cast<double>(constants.mu);
     const auto nodes = mesh.cell_nodes(cell);
-    Eigen::Matrix<double, Dim * n, Dim* n> stiffness = Eigen::Matrix<double, Dim * n, Dim * n>::Zero();
+    Eigen::Matrix<double, Dim * n, Dim * n> stiffness = Eigen::Matrix<double, Dim * n, Dim * n>::Zero();
     for (const auto& point : Element::stiffness_rule) {
         const auto slopes = Element::gradients(point.xi);
         Eigen::Matrix<double, n, d> reference;

@@ -65,8 +65,7 @@ private:
 };
 
 template <class M>
-Dynamics<M>::Dynamics(M model, const DynamicsOptions<Scalar>& options)
-    : m_model(std::move(model)), m_options(options) {
+Dynamics<M>::Dynamics(M model, const DynamicsOptions<Scalar>& options) : m_model(std::move(model)), m_options(options) {
     require(options.alpha >= Scalar(-1) / 3 && options.alpha <= 0, "alpha", "a value in [-1/3, 0]", options.alpha);
     require(options.tolerance > 0 && options.tolerance < 1, "tolerance", "a value in (0, 1)", options.tolerance);
     require(options.max_iterations >= 1, "max_iterations", "at least one iteration", options.max_iterations);
@@ -95,8 +94,7 @@ void Dynamics<M>::use_clamps(const Scenario<dimension, Scalar>& scenario) {
 /// Assembles the stiffness part of the damping at these positions, unless it is there already.
 template <class M>
 void Dynamics<M>::take_damping(const Nodes& positions) {
-    if (m_model.options().stiffness_damping > 0 &&
-        (m_damping_at.size() == 0 || m_damping_at != positions)) {
+    if (m_model.options().stiffness_damping > 0 && (m_damping_at.size() == 0 || m_damping_at != positions)) {
         m_model.assemble(positions, m_damping);
         m_damping_at = positions;
     }
@@ -195,8 +193,8 @@ Status Dynamics<M>::attempt(State<dimension, Scalar>& state, const Scenario<dime
         }
     }
     const Nodes loads = external_forces<dimension, Scalar>(scenario, m_model.masses(), time);
-    problem.constant = problem.weight * (damped(problem.predicted_velocities) - loads) +
-                       alpha * state.accelerations * masses;
+    problem.constant =
+        problem.weight * (damped(problem.predicted_velocities) - loads) + alpha * state.accelerations * masses;
 
     // Start where constant acceleration leads, or where the body is if that is not allowed.
     problem.positions = problem.predicted;
@@ -209,9 +207,8 @@ Status Dynamics<M>::attempt(State<dimension, Scalar>& state, const Scenario<dime
     }
 
     const auto largest = [](const Nodes& nodes) { return nodes.cwiseAbs().maxCoeff(); };
-    const Scalar scale =
-        std::max(std::max(largest(loads), largest(m_model.internal_forces(state.positions))),
-                 std::max(largest(accelerations * masses), largest(state.velocities * masses) / dt));
+    const Scalar scale = std::max(std::max(largest(loads), largest(m_model.internal_forces(state.positions))),
+                                  std::max(largest(accelerations * masses), largest(state.velocities * masses) / dt));
     const Scalar rounding = 8 * std::numeric_limits<Scalar>::epsilon() *
                             (problem.c0 * m_model.masses().maxCoeff() + m_stiffest) * largest(state.positions);
     NewtonOptions<Scalar> newton{.max_iterations = m_options.max_iterations};

@@ -80,10 +80,10 @@ void Model<Dim, S, Cell, Mat>::check_options() const {
             m_options.thickness);
     require(!is_solid || m_options.thickness == 1, "thickness", "none given for a solid", m_options.thickness);
     require(Dim == 2 || !strain, "plane", "plane strain for plane bodies only", is_membrane ? "a membrane" : "a solid");
-    require(!is_mean() || is_solid || (Dim == 2 && strain), "dilatation", "pointwise in plane stress, which does not lock",
-            "mean");
-    require(m_options.mass_damping >= 0 && std::isfinite(m_options.mass_damping), "mass_damping",
-            "a value not below 0", m_options.mass_damping);
+    require(!is_mean() || is_solid || (Dim == 2 && strain), "dilatation",
+            "pointwise in plane stress, which does not lock", "mean");
+    require(m_options.mass_damping >= 0 && std::isfinite(m_options.mass_damping), "mass_damping", "a value not below 0",
+            m_options.mass_damping);
     require(m_options.stiffness_damping >= 0 && std::isfinite(m_options.stiffness_damping), "stiffness_damping",
             "a value not below 0", m_options.stiffness_damping);
 }
@@ -174,8 +174,9 @@ SparseMatrix<S> Model<Dim, S, Cell, Mat>::consistent_mass(const FreeNodes& free)
         Eigen::Matrix<S, Dim * n, Dim * n> block = Eigen::Matrix<S, Dim * n, Dim * n>::Zero();
         for (int b = 0; b < n; ++b) {
             for (int a = 0; a < n; ++a) {
-                block.template block<Dim, Dim>(Dim * a, Dim * b).diagonal().setConstant(
-                    static_cast<S>(m_density * volume * shape(a) * shape(b)));
+                block.template block<Dim, Dim>(Dim * a, Dim * b)
+                    .diagonal()
+                    .setConstant(static_cast<S>(m_density * volume * shape(a) * shape(b)));
             }
         }
         mass.add(cell, block);
@@ -217,8 +218,7 @@ void Model<Dim, S, Cell, Mat>::evaluate(Index point, const Deformation& f, Point
                 for (int k = 0; k < plane; ++k) {
                     for (int l = 0; l < plane; ++l) {
                         to.hessian.template block<Dim, Dim>(Dim * k, Dim * l) =
-                            frame * from.hessian.template block<plane, plane>(plane * k, plane * l) *
-                            frame.transpose();
+                            frame * from.hessian.template block<plane, plane>(plane * k, plane * l) * frame.transpose();
                     }
                 }
             }

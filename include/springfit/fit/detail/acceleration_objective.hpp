@@ -6,7 +6,7 @@
 namespace springfit {
 
 template <int Dim, std::floating_point Scalar>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 void AccelerationObjective<Dim, Scalar>::index_springs(const SpringNetwork<Dim, Scalar>& network) {
     const auto known = [&](ParameterKind kind, const Values<Scalar>& given) {
         const Values<double> values = given.template cast<double>();
@@ -75,7 +75,7 @@ void AccelerationObjective<Dim, Scalar>::index_springs(const SpringNetwork<Dim, 
 }
 
 template <int Dim, std::floating_point Scalar>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 void AccelerationObjective<Dim, Scalar>::flush() {
     if (m_batch.size() == 0) {
         return;
@@ -96,7 +96,7 @@ void AccelerationObjective<Dim, Scalar>::flush() {
 /// Adds [A y]'[A y] of one node over the frames of the batch, A theta being the springs' part of its weighted
 /// acceleration and y what they have to reach.
 template <int Dim, std::floating_point Scalar>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 void AccelerationObjective<Dim, Scalar>::add_node(
     Index node, Eigen::Matrix<double, detail::FrameBatch<Dim, Scalar>::rows, Eigen::Dynamic>& equations) {
     using Lanes = typename detail::FrameBatch<Dim, Scalar>::Lanes;
@@ -162,14 +162,15 @@ void AccelerationObjective<Dim, Scalar>::add_node(
 }
 
 template <int Dim, std::floating_point Scalar>
-requires SpatialDimension<Dim> FitProblem AccelerationObjective<Dim, Scalar>::problem()
-&{
+    requires SpatialDimension<Dim>
+FitProblem AccelerationObjective<Dim, Scalar>::problem() & {
     flush();
     return take_problem(m_gram);
 }
 
 template <int Dim, std::floating_point Scalar>
-requires SpatialDimension<Dim> FitProblem AccelerationObjective<Dim, Scalar>::problem() && {
+    requires SpatialDimension<Dim>
+FitProblem AccelerationObjective<Dim, Scalar>::problem() && {
     flush();
     m_batch = {};
     return take_problem(std::move(m_gram));
@@ -177,7 +178,8 @@ requires SpatialDimension<Dim> FitProblem AccelerationObjective<Dim, Scalar>::pr
 
 /// Turns the triangles of [A y]'[A y] into the node terms, in place: what goes into a term lies behind where it goes.
 template <int Dim, std::floating_point Scalar>
-requires SpatialDimension<Dim> FitProblem AccelerationObjective<Dim, Scalar>::take_problem(std::vector<double> gram) {
+    requires SpatialDimension<Dim>
+FitProblem AccelerationObjective<Dim, Scalar>::take_problem(std::vector<double> gram) {
     std::vector<bool> used(static_cast<std::size_t>(m_parameters.n_unknowns()), false);
     for (std::size_t i = 0; i < m_seen_free.size(); ++i) {
         for (Index c = m_column_begin[i]; m_seen_free[i] && c < m_column_begin[i + 1]; ++c) {
@@ -223,7 +225,7 @@ requires SpatialDimension<Dim> FitProblem AccelerationObjective<Dim, Scalar>::ta
 
 /// Sets bounds, prior and ridge, and holds what no motion excites at its prior.
 template <int Dim, std::floating_point Scalar>
-requires SpatialDimension<Dim>
+    requires SpatialDimension<Dim>
 void AccelerationObjective<Dim, Scalar>::identify(FitProblem& problem) const {
     problem.lower = problem.parameters.lower();
     problem.upper = problem.parameters.upper();

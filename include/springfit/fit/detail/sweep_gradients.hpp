@@ -36,8 +36,7 @@ public:
         for (Values<Scalar>* vector : {&m_residual, &m_conjugate, &m_direction, &m_step}) {
             vector->setZero(m_sweeps.size());
         }
-        m_sweeps.solve_lower(
-            m_diagonal, [&](Index u) -> Lanes { return -lanes(m_image, u); }, m_residual);
+        m_sweeps.solve_lower(m_diagonal, [&](Index u) -> Lanes { return -lanes(m_image, u); }, m_residual);
         m_first = m_now = measured_after([](Index, Index) {});
         m_share = 0;
     }

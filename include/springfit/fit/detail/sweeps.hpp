@@ -190,8 +190,8 @@ inline Values<double> sweep_start(const FitProblem& problem, const DominantTermO
         return given;
     }
     const Values<double> estimate = one_pass_values(problem, options.execution);
-    const bool keep_given = options.start == SweepStart::better &&
-                            problem.objective.value(given) < problem.objective.value(estimate);
+    const bool keep_given =
+        options.start == SweepStart::better && problem.objective.value(given) < problem.objective.value(estimate);
     return keep_given ? given : estimate;
 }
 
@@ -211,8 +211,8 @@ inline FitReport dominant_term(const FitProblem& problem, const DominantTermOpti
     double lowest = residual;
     int idle = 0;               // sweeps since the residual was lowest
     constexpr int patience = 5; // of them, while Phi stands still, before giving up
-    const double rounding = std::numeric_limits<double>::epsilon() *
-                            problem.objective.value(Values<double>::Zero(problem.n_unknowns()));
+    const double rounding =
+        std::numeric_limits<double>::epsilon() * problem.objective.value(Values<double>::Zero(problem.n_unknowns()));
     while (true) {
         if (residual <= options.tolerance) {
             report.status = Status::converged;

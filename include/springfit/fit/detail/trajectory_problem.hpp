@@ -304,8 +304,7 @@ Values<double> TrajectoryPoint<Dim>::curvature(int probes) {
         const NetworkValues sum =
             sum_over_blocks([&](std::size_t block, const auto& windows, auto& tape, NetworkValues& part) {
                 std::mt19937 random(static_cast<unsigned>(1000003 * probe + static_cast<int>(block)));
-                windows.add_probe(
-                    tape, [&random] { return (random() & 1U) != 0 ? 1. : -1.; }, part);
+                windows.add_probe(tape, [&random] { return (random() & 1U) != 0 ? 1. : -1.; }, part);
             });
         diagonal += m_problem->m_parameters.pull_back(m_network, sum).cwiseAbs2();
     }

@@ -56,10 +56,9 @@ public:
     WindowSimulation(const WindowBlock& windows, const WindowGroup<Dim>& group, const Motions& motions,
                      const StepRule& rule, Index checkpoint_interval, const SpringNetwork<Dim, double>& network,
                      const BlockCholesky& factor)
-        : m_windows(windows), m_motions(motions), m_rule(rule),
-          m_part(rule.alpha * group.step), m_system{network, group.clamped, factor,
-                                                    group.step > 0 ? 1 / (m_part * m_part) : 0.,
-                                                    group.step > 0 ? 1 / m_part : 0.},
+        : m_windows(windows), m_motions(motions), m_rule(rule), m_part(rule.alpha * group.step),
+          m_system{network, group.clamped, factor, group.step > 0 ? 1 / (m_part * m_part) : 0.,
+                   group.step > 0 ? 1 / m_part : 0.},
           m_n_steps(windows.frames * rule.steps_per_frame), m_interval(checkpoint_interval) {}
 
     /// Simulates; `misfit` is sum weight |x - x_ref|^2. `near` is where static equilibria are looked for, null: at
@@ -172,8 +171,7 @@ public:
             add_parameter_derivative<Dim>(m_system.network, y, z, derivative);
             return;
         }
-        (void)backwards(
-            tape, [&](const ColumnBlock& state, Index) { return random(state); }, solve, false, derivative);
+        (void)backwards(tape, [&](const ColumnBlock& state, Index) { return random(state); }, solve, false, derivative);
     }
 
 private:
@@ -185,7 +183,7 @@ private:
     }
 
     /// A recorded quantity of each window, `fraction` of the way from one of its frames to the next.
-    [[nodiscard]] ColumnBlock gather(Frames Motion<Dim, double>::*quantity, Index frame, double fraction) const {
+    [[nodiscard]] ColumnBlock gather(Frames Motion<Dim, double>::* quantity, Index frame, double fraction) const {
         const auto columns = static_cast<Index>(m_windows.motions.size());
         ColumnBlock result(Dim * m_system.network.n_nodes(), columns);
         for (Index c = 0; c < columns; ++c) {

@@ -291,8 +291,9 @@ Model<Dim, Scalar> model_from_json(const Json& json, const std::string& file) {
     const JsonPlace nodes = root.member("nodes");
     model.network = detail::read_network<Dim, Scalar>(nodes, root.member("springs"));
     if (root.member("springs").value().contains("data_share")) {
-        model.data_share = detail::read_values<Scalar>(root.member("springs").member("data_share"),
-                                                       model.network.n_springs(), "spring", detail::Range::not_negative);
+        model.data_share =
+            detail::read_values<Scalar>(root.member("springs").member("data_share"), model.network.n_springs(),
+                                        "spring", detail::Range::not_negative);
     }
     if (json.contains("cells")) {
         detail::read_cells<Dim, Scalar>(root.member("cells"), model.network);

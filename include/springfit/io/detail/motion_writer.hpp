@@ -25,7 +25,7 @@ void check_node_numbers(const Matrix& numbers, Index n_nodes, std::string_view n
 template <int Dim, std::floating_point Scalar>
 struct MotionColumn {
     const char* dataset;
-    const Points<Dim, Scalar>* MotionFrame<Dim, Scalar>::*values;
+    const Points<Dim, Scalar>* MotionFrame<Dim, Scalar>::* values;
     bool is_position; ///< stored as displacement from rest
 };
 

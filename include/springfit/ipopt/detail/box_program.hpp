@@ -15,11 +15,11 @@ namespace springfit::ipopt::detail {
 /// and must be stepped back from. With a member `hessian`, the constant lower triangle, it is quadratic; without, Ipopt
 /// approximates its Hessian from gradients, in limited memory. A member `is_stuck` may end the solve.
 template <class T>
-concept BoxObjective = std::derived_from<std::remove_const_t<T>, BoxScaling> &&
-    requires(T& objective, const Values<double>& x) {
-    { objective.value(x) } -> std::same_as<double>;
-    { objective.gradient(x) } -> std::convertible_to<Values<double>>;
-};
+concept BoxObjective =
+    std::derived_from<std::remove_const_t<T>, BoxScaling> && requires(T& objective, const Values<double>& x) {
+        { objective.value(x) } -> std::same_as<double>;
+        { objective.gradient(x) } -> std::convertible_to<Values<double>>;
+    };
 
 /// The objective as Ipopt sees it, and what became of it.
 template <BoxObjective Objective>

@@ -7,8 +7,9 @@ namespace springfit {
 
 template <int Dim, std::floating_point ScalarType, std::floating_point LinearScalar>
     requires SpatialDimension<Dim>
-ImplicitBody<Dim, ScalarType, LinearScalar>::ImplicitBody(
-    const SpringNetwork<Dim, Scalar>& network, const ImplicitBodyOptions<Scalar>& options, const Execution& execution)
+ImplicitBody<Dim, ScalarType, LinearScalar>::ImplicitBody(const SpringNetwork<Dim, Scalar>& network,
+                                                          const ImplicitBodyOptions<Scalar>& options,
+                                                          const Execution& execution)
     : Base(network, execution), m_options(options), m_operator(this->m_springs) {
     require(options.max_iterations > 0, "max_iterations", "at least one", options.max_iterations);
     require(options.linear_tolerance > 0 && options.linear_tolerance < 1, "linear_tolerance", "a value in (0, 1)",
@@ -35,8 +36,7 @@ void ImplicitBody<Dim, ScalarType, LinearScalar>::set_inertia(Scalar h) {
 
 template <int Dim, std::floating_point ScalarType, std::floating_point LinearScalar>
     requires SpatialDimension<Dim>
-ImplicitStepReport<ScalarType>
-ImplicitBody<Dim, ScalarType, LinearScalar>::step(Scalar h) {
+ImplicitStepReport<ScalarType> ImplicitBody<Dim, ScalarType, LinearScalar>::step(Scalar h) {
     require(h > 0 && std::isfinite(h), "h", "a positive time step", h);
     ImplicitStepReport<Scalar> report;
     this->start_step(h);

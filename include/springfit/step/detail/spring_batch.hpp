@@ -10,8 +10,8 @@ namespace springfit {
 
 template <int Dim, std::floating_point ScalarType>
     requires SpatialDimension<Dim>
-SpringBatch<Dim, ScalarType>::SpringBatch(const SpringNetwork<Dim, Scalar>& network,
-                                                                         Index n_bodies, const Execution& execution)
+SpringBatch<Dim, ScalarType>::SpringBatch(const SpringNetwork<Dim, Scalar>& network, Index n_bodies,
+                                          const Execution& execution)
     : m_n_bodies(n_bodies), m_execution(execution),
       m_order((validate(network), locality_order(network.n_nodes(), network.springs))), m_number(m_order.size()) {
     require(n_bodies > 0, "n_bodies", "at least one", n_bodies);

@@ -9,8 +9,7 @@ namespace springfit {
 
 template <int Dim, std::floating_point ScalarType>
     requires SpatialDimension<Dim>
-SpringBody<Dim, ScalarType>::SpringBody(const SpringNetwork<Dim, Scalar>& network,
-                                                                       const Execution& execution)
+SpringBody<Dim, ScalarType>::SpringBody(const SpringNetwork<Dim, Scalar>& network, const Execution& execution)
     : m_springs((validate(network), network)), m_execution(execution) {
     const auto n = static_cast<std::size_t>(network.n_nodes());
     m_nodes.assign(n, Record{});
@@ -26,8 +25,7 @@ SpringBody<Dim, ScalarType>::SpringBody(const SpringNetwork<Dim, Scalar>& networ
 
 template <int Dim, std::floating_point ScalarType>
     requires SpatialDimension<Dim>
-std::size_t SpringBody<Dim, ScalarType>::bytes()
-const {
+std::size_t SpringBody<Dim, ScalarType>::bytes() const {
     const std::size_t per_node = sizeof(Record) + 2 * sizeof(Force) + sizeof(Scalar) + 2 * sizeof(int);
     std::size_t total = m_nodes.size() * per_node;
     for (const auto& domain : m_springs.domains()) {
@@ -38,8 +36,7 @@ const {
 
 template <int Dim, std::floating_point ScalarType>
     requires SpatialDimension<Dim>
-Vector<Dim, ScalarType> SpringBody<Dim, ScalarType>::position(int node)
-const {
+Vector<Dim, ScalarType> SpringBody<Dim, ScalarType>::position(int node) const {
     const Record& record = m_nodes[static_cast<std::size_t>(m_springs.number(node))];
     Vector<Dim, Scalar> result;
     for (int d = 0; d < Dim; ++d) {
@@ -50,8 +47,7 @@ const {
 
 template <int Dim, std::floating_point ScalarType>
     requires SpatialDimension<Dim>
-Vector<Dim, ScalarType> SpringBody<Dim, ScalarType>::velocity(int node)
-const {
+Vector<Dim, ScalarType> SpringBody<Dim, ScalarType>::velocity(int node) const {
     const Record& record = m_nodes[static_cast<std::size_t>(m_springs.number(node))];
     Vector<Dim, Scalar> result;
     for (int d = 0; d < Dim; ++d) {

@@ -83,10 +83,9 @@ public:
     [[nodiscard]] const SparseMatrix<Scalar>& hessian(const Values<Scalar>& x) {
         free_nodes().template scatter<Dim, Scalar>(x, m_points);
         m_matrix.set_zero();
-        add_stiffness<Dim, Scalar>(*m_network, m_points,
-                                   m_is_near || !m_is_semidefinite ? Curvature::exact
-                                                                   : Curvature::positive_semidefinite,
-                                   m_matrix);
+        add_stiffness<Dim, Scalar>(
+            *m_network, m_points, m_is_near || !m_is_semidefinite ? Curvature::exact : Curvature::positive_semidefinite,
+            m_matrix);
         if (m_floor > 0) {
             const Scalar stiffest = m_matrix.matrix().diagonal().maxCoeff();
             for (Index f = 0; f < free_nodes().n_free(); ++f) {
@@ -146,7 +145,7 @@ private:
     Scalar m_reach = std::numeric_limits<Scalar>::infinity();
     bool m_is_near = false;
     bool m_is_semidefinite = true; ///< far from the minimum
-    Points<Dim, Scalar> m_points; ///< all nodes; the free ones at the x last asked for
+    Points<Dim, Scalar> m_points;  ///< all nodes; the free ones at the x last asked for
     Points<Dim, Scalar> m_start;
     Points<Dim, Scalar> m_forces;
 };
