@@ -1,7 +1,7 @@
 # The components of springfit, the rooms of include/springfit that each holds, and what each links.
 # Read by the build and by the installed package, so that both look for dependencies in the same way.
 
-set(SPRINGFIT_COMPONENTS core parallel cholmod ipopt io cgal search)
+set(SPRINGFIT_ALL_COMPONENTS core parallel cholmod ipopt io cgal search compiled compiled_cgal)
 
 set(SPRINGFIT_core_ROOMS core mesh solve fem motion network step fit closed_form score)
 set(SPRINGFIT_core_LINKS Eigen3::Eigen)
@@ -18,6 +18,9 @@ set(SPRINGFIT_cgal_ROOMS cgal)
 set(SPRINGFIT_cgal_LINKS springfit::core CGAL::CGAL)
 set(SPRINGFIT_search_ROOMS search)
 set(SPRINGFIT_search_LINKS springfit::core Pagmo::pagmo)
+# What is compiled once, beside the headers: static libraries of cmake/SpringfitCompiled.cmake.
+set(SPRINGFIT_compiled_ROOMS compiled)
+set(SPRINGFIT_compiled_cgal_ROOMS)
 
 # springfit_find_component(<name>): sets springfit_<name>_FOUND, and springfit_<name>_REASON where it is FALSE.
 macro(springfit_find_component component)
@@ -39,6 +42,10 @@ macro(springfit_find_component component)
     springfit_require_pkg_config(io HDF5 hdf5)
   elseif("${component}" STREQUAL "search")
     springfit_require(search pagmo)
+  elseif("${component}" STREQUAL "compiled")
+    # core alone, which is always looked for
+  elseif("${component}" STREQUAL "compiled_cgal")
+    springfit_require(compiled_cgal CGAL 5.5)
   else()
     set(springfit_${component}_FOUND FALSE)
     set(springfit_${component}_REASON "springfit has no component of this name")
@@ -55,12 +62,15 @@ endmacro()
 
 macro(springfit_require_pkg_config component prefix module)
   find_package(PkgConfig QUIET)
-  if(PkgConfig_FOUND)
-    pkg_check_modules(SPRINGFIT_${prefix} QUIET IMPORTED_TARGET GLOBAL ${module})
-  endif()
-  if(NOT SPRINGFIT_${prefix}_FOUND)
+  if(NOT PkgConfig_FOUND)
     set(springfit_${component}_FOUND FALSE)
-    set(springfit_${component}_REASON "${module} not found by pkg-config")
+    set(springfit_${component}_REASON "pkg-config not found, by which ${module} is looked for")
+  else()
+    pkg_check_modules(SPRINGFIT_${prefix} QUIET IMPORTED_TARGET GLOBAL ${module})
+    if(NOT SPRINGFIT_${prefix}_FOUND)
+      set(springfit_${component}_FOUND FALSE)
+      set(springfit_${component}_REASON "${module} not found by pkg-config")
+    endif()
   endif()
 endmacro()
 

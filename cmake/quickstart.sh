@@ -4,26 +4,66 @@
 #   sh cmake/quickstart.sh test    build everything and run the tests
 #   sh cmake/quickstart.sh study   the accuracy study of methods, meshes and materials, into docs/results/ (half an hour)
 #   sh cmake/quickstart.sh performance   speed beside other programs, into docs/performance.md
-# All install the Debian packages that are missing; run again, they do only what is left to do.
+# Each installs the Debian packages that it is missing; run again, it does only what is left to do.
+#   sh cmake/quickstart.sh packages demo   names the packages of a command, and does nothing
 set -eu
 cd "$(dirname "$0")/.."
 
-build_packages="g++ cmake ninja-build pkg-config libeigen3-dev libtbb-dev libcgal-dev coinor-libipopt-dev
-                nlohmann-json3-dev libhdf5-dev libcli11-dev libsuitesparse-dev libopenblas0-serial"
-bench_packages="libbenchmark-dev libbullet-dev libmujoco-dev libpetsc-real-dev python3-scipy"
-test_packages="doctest-dev libpagmo-dev python3 python3-h5py"
+# What each command's preset looks for, and what the command runs; tests/quickstart compares.
+core_packages="g++ cmake ninja-build libeigen3-dev"
+factor_packages="libsuitesparse-dev libopenblas0-serial"
+program_packages="$core_packages $factor_packages pkg-config libtbb-dev libcgal-dev nlohmann-json3-dev libhdf5-dev
+                  libcli11-dev"
+study_packages="$core_packages $factor_packages pkg-config libtbb-dev libcgal-dev coinor-libipopt-dev libpagmo-dev"
+test_packages="$program_packages coinor-libipopt-dev libpagmo-dev doctest-dev python3 python3-h5py clang"
+performance_packages="$core_packages $factor_packages pkg-config libtbb-dev coinor-libipopt-dev libbenchmark-dev
+                      libbullet-dev libmujoco-dev libpetsc-real-dev libopenmpi-dev python3 python3-scipy"
+
+packages_of() {
+    case "$1" in
+    demo) echo $program_packages ;;
+    test) echo $test_packages ;;
+    study) echo $study_packages ;;
+    performance) echo $performance_packages ;;
+    *) usage ;;
+    esac
+}
+
+usage() {
+    echo "usage: sh cmake/quickstart.sh demo|test|study|performance" >&2
+    echo "       sh cmake/quickstart.sh packages demo|test|study|performance" >&2
+    exit 2
+}
+
+# as_root <what for> <command...>
+as_root() {
+    purpose="$1"
+    shift
+    if [ "$(id -u)" -eq 0 ]; then
+        "$@"
+    elif command -v sudo >/dev/null; then
+        sudo "$@"
+    else
+        echo "quickstart: $purpose needs root, and there is no sudo; as root, run: $*" >&2
+        exit 2
+    fi
+}
 
 install_missing() {
+    if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+        echo "quickstart: expected Debian 12 or a system like it, found no dpkg and apt-get; elsewhere install what" \
+            "docs/install.md names, and build with cmake --preset program" >&2
+        exit 2
+    fi
     missing=""
     for package in "$@"; do
         dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing="$missing $package"
     done
     [ -n "$missing" ] || return 0
-    as_root=""
-    [ "$(id -u)" -eq 0 ] || as_root="sudo"
     echo "installing:$missing"
-    $as_root apt-get update -qq
-    $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing >/dev/null
+    as_root "installing$missing" apt-get update -qq
+    as_root "installing$missing" env DEBIAN_FRONTEND=noninteractive \
+        apt-get install -y -qq --no-install-recommends $missing >/dev/null
 }
 
 # The surfaces come with CGAL's own examples; they are taken out of the package without installing it.
@@ -33,10 +73,15 @@ fetch_surfaces() {
         [ -s "build/data/$surface.off" ] || missing="$missing $surface"
     done
     [ -n "$missing" ] || return 0
+    echo "fetching:$missing"
     mkdir -p build/data
     (
         cd build/data
-        apt-get download -qq libcgal-demo
+        rm -rf package libcgal-demo_*.deb
+        if ! apt-get download -qq libcgal-demo 2>/dev/null; then # no package lists, or old ones
+            as_root "fetching the package libcgal-demo" apt-get update -qq
+            apt-get download -qq libcgal-demo
+        fi
         dpkg-deb -x libcgal-demo_*.deb package
         for surface in $missing; do
             tar -xzOf package/usr/share/doc/libcgal-demo/data.tar.gz "data/meshes/$surface.off" >"$surface.off.part"
@@ -48,28 +93,28 @@ fetch_surfaces() {
 
 case "${1:-}" in
 demo)
-    install_missing $build_packages
-    cmake --preset default
+    install_missing $program_packages
+    cmake --preset program
     cmake --build build --target springfit
     fetch_surfaces elephant
     build/bin/springfit fit build/data/elephant.off --young 5e4 --poisson 0.45 --density 1000 \
         --material neo-hookean --nodes 2000 --volume --static-cases 36 --fit-seconds 120 --out out/elephant
     ;;
 test)
-    install_missing $build_packages $test_packages
+    install_missing $test_packages
     cmake --preset default
     cmake --build build
     ctest --test-dir build --output-on-failure -j "$(nproc)"
     ;;
 study)
-    install_missing $build_packages $test_packages
-    cmake --preset default
+    install_missing $study_packages
+    cmake --preset study
     cmake --build build --target springfit_study
     fetch_surfaces elephant fandisk knot1 bear
     build/bin/springfit_study --data build/data --out docs/results
     ;;
 performance)
-    install_missing $build_packages $bench_packages
+    install_missing $performance_packages
     cmake --preset bench
     cmake --build build-bench --target springfit_speed
     programs=""
@@ -78,8 +123,10 @@ performance)
     done
     python3 bench/speed/report.py $programs --out docs
     ;;
+packages)
+    packages_of "${2:-}"
+    ;;
 *)
-    echo "usage: sh cmake/quickstart.sh demo|test|study|performance" >&2
-    exit 2
+    usage
     ;;
 esac
