@@ -16,7 +16,7 @@ namespace {
 using SolidModel = fem::Model<3, double, Tet4, fem::NeoHookean>;
 static_assert(Reference<SolidModel>);
 static_assert(Reference<fem::Model<2, float, Tri6, fem::LinearElastic>>);
-static_assert(Stepper<fem::Dynamics<fem::Model<3, float, Quad4, fem::Corotated>>>);
+static_assert(Stepper<fem::Dynamics<3, float>>);
 
 constexpr double pi = std::numbers::pi;
 

@@ -17,7 +17,7 @@ struct DynamicsOptions {
     int max_halvings = 4;    ///< how often a step that fails may be halved, >= 0
 };
 
-/// Implicit dynamics of a model, by the method of Hilber, Hughes and Taylor with lumped masses:
+/// Implicit dynamics of a body, by the method of Hilber, Hughes and Taylor with lumped masses:
 ///
 ///     M A + (1 + alpha) (f_int(x) + D v - f_ext)|_{n+1} - alpha (f_int(x) + D v - f_ext)|_n = 0,
 ///     x_{n+1} = x_n + dt v_n + dt^2 ((1/2 - beta) A_n + beta A),  v_{n+1} = v_n + dt ((1 - gamma) A_n + gamma A),
@@ -29,56 +29,63 @@ struct DynamicsOptions {
 /// M a = f_ext - f_int(x) - D v with D at the same x; A, which is a little older, stays inside.
 ///
 /// A model of the concept Stepper. Clamps may move: velocity and acceleration of clamped nodes are central differences.
-template <class M>
+template <int Dim, std::floating_point ScalarType>
 class Dynamics {
 public:
-    static constexpr int dimension = M::dimension;
-    using Scalar = typename M::Scalar;
+    static constexpr int dimension = Dim;
+    using Scalar = ScalarType;
 
-    /// Keeps a copy of the model.
-    explicit Dynamics(M model, const DynamicsOptions<Scalar>& options = {});
+    /// Keeps a copy of the body, such as a `Model`. Throws InvalidArgument for an option out of its range.
+    template <Elastic B>
+    explicit Dynamics(B body, const DynamicsOptions<Scalar>& options = {})
+        : Dynamics(std::make_shared<const B>(std::move(body)), options) {}
+    /// Shares a body.
+    explicit Dynamics(std::shared_ptr<const ElasticBody<Dim, Scalar>> body,
+                      const DynamicsOptions<Scalar>& options = {});
 
-    [[nodiscard]] const M& model() const { return m_model; }
-    [[nodiscard]] const Points<dimension, Scalar>& rest_positions() const { return m_model.rest_positions(); }
-    [[nodiscard]] const Values<Scalar>& masses() const { return m_model.masses(); }
+    [[nodiscard]] const Points<Dim, Scalar>& rest_positions() const { return m_body->rest_positions(); }
+    [[nodiscard]] const Values<Scalar>& masses() const { return m_body->masses(); }
     /// Newton iterations of all steps so far.
     [[nodiscard]] int iterations() const { return m_iterations; }
 
-    /// The state at time 0. Throws InvalidArgument for a scenario that does not fit the model.
-    [[nodiscard]] State<dimension, Scalar> start(const Scenario<dimension, Scalar>& scenario);
+    /// The state at time 0. Throws InvalidArgument for a scenario that does not fit the body.
+    [[nodiscard]] State<Dim, Scalar> start(const Scenario<Dim, Scalar>& scenario);
 
     /// Moves the state on by `dt` s; on any status but `converged` the state is left as it was.
-    Status advance(State<dimension, Scalar>& state, const Scenario<dimension, Scalar>& scenario, Scalar dt);
+    Status advance(State<Dim, Scalar>& state, const Scenario<Dim, Scalar>& scenario, Scalar dt);
 
 private:
-    using Nodes = Points<dimension, Scalar>;
+    using Nodes = Points<Dim, Scalar>;
 
     class StepProblem;
 
-    void use_clamps(const Scenario<dimension, Scalar>& scenario);
-    Status step(State<dimension, Scalar>& state, const Scenario<dimension, Scalar>& scenario, Scalar dt, int halvings);
-    Status attempt(State<dimension, Scalar>& state, const Scenario<dimension, Scalar>& scenario, Scalar dt);
+    void use_clamps(const Scenario<Dim, Scalar>& scenario);
+    Status step(State<Dim, Scalar>& state, const Scenario<Dim, Scalar>& scenario, Scalar dt, int halvings);
+    Status attempt(State<Dim, Scalar>& state, const Scenario<Dim, Scalar>& scenario, Scalar dt);
     [[nodiscard]] Nodes damped(const Nodes& velocities) const;
     void take_damping(const Nodes& positions);
-    void balance(State<dimension, Scalar>& state, const Scenario<dimension, Scalar>& scenario);
+    void balance(State<Dim, Scalar>& state, const Scenario<Dim, Scalar>& scenario);
 
-    M m_model;
+    std::shared_ptr<const ElasticBody<Dim, Scalar>> m_body;
     DynamicsOptions<Scalar> m_options;
     std::vector<int> m_clamped;
     FreeNodes m_free;
-    Stiffness<dimension, Scalar> m_stiffness; ///< over the free nodes
-    Stiffness<dimension, Scalar> m_damping;   ///< K over all nodes, at m_damping_at; only with stiffness damping
+    Stiffness<Dim, Scalar> m_stiffness; ///< over the free nodes
+    Stiffness<Dim, Scalar> m_damping;   ///< K over all nodes, at m_damping_at; only with stiffness damping
     Nodes m_damping_at;
     SymmetricSolver<Scalar> m_solver;
-    State<dimension, Scalar> m_last; ///< the state left by the last step, its acceleration that of the method (A)
-    Scalar m_stiffest = 0;           ///< largest diagonal entry of the stiffness at rest, N/m
+    State<Dim, Scalar> m_last; ///< the state left by the last step, its acceleration that of the method (A)
+    Scalar m_stiffest = 0;     ///< largest diagonal entry of the stiffness at rest, N/m
     int m_iterations = 0;
 };
 
-/// The integrator of a model under the default options: `fem::Model` is a model of the concept Reference.
-template <int Dim, std::floating_point Scalar, FiniteElementCell Cell, Material Mat>
-[[nodiscard]] Dynamics<Model<Dim, Scalar, Cell, Mat>> make_stepper(const Model<Dim, Scalar, Cell, Mat>& model) {
-    return Dynamics<Model<Dim, Scalar, Cell, Mat>>(model);
+template <Elastic B>
+Dynamics(B, const DynamicsOptions<typename B::Scalar>& = {}) -> Dynamics<B::dimension, typename B::Scalar>;
+
+/// The integrator of a body under the default options: `fem::Model` is a model of the concept Reference.
+template <Elastic B>
+[[nodiscard]] Dynamics<B::dimension, typename B::Scalar> make_stepper(const B& body) {
+    return Dynamics<B::dimension, typename B::Scalar>(body);
 }
 
 } // namespace springfit::fem

@@ -2,29 +2,11 @@
 #pragma once
 
 #include <springfit/fem/detail/law.hpp>
+#include <springfit/fem/elastic_body.hpp>
 #include <springfit/fem/element.hpp>
-#include <springfit/fem/stiffness.hpp>
 #include <springfit/mesh/mesh.hpp>
 
 namespace springfit::fem {
-
-/// What a plane body is: a thin sheet, free to change its thickness, or a slice of a long body, which cannot.
-enum class Plane { stress, strain };
-
-/// Where the volume measure theta enters the energy U(theta).
-enum class Dilatation {
-    pointwise, ///< at each quadrature point: the plain element, which locks near incompressibility
-    mean       ///< its mean over a patch: around each node in Tri3 and Tet4, over the cell in the others
-};
-
-template <std::floating_point Scalar = double>
-struct ModelOptions {
-    Scalar thickness = 1;                          ///< h, m, > 0; of plane bodies and membranes
-    Plane plane = Plane::stress;                   ///< of plane bodies; membranes are in plane stress
-    Dilatation dilatation = Dilatation::pointwise; ///< `mean` for solids and plane strain
-    Scalar mass_damping = 0;                       ///< alpha of Rayleigh damping, 1/s, >= 0
-    Scalar stiffness_damping = 0;                  ///< beta of Rayleigh damping, s, >= 0
-};
 
 /// Throws InvalidArgument where `validate` of the mesh does, and for a cell that is inverted or has no volume at rest,
 /// naming it. O(cells).
@@ -42,9 +24,8 @@ void validate(const Mesh<Dim, Scalar, Cell>& mesh);
 /// A model of the concept Reference (`fem/dynamics.hpp`).
 template <int Dim, std::floating_point ScalarType, FiniteElementCell Cell, Material Mat>
     requires SpatialDimension<Dim>
-class Model {
+class Model final : public ElasticBody<Dim, ScalarType> {
 public:
-    static constexpr int dimension = Dim;
     using Scalar = ScalarType;
     static constexpr bool is_membrane = springfit::is_membrane<Dim, Scalar, Cell>;
     static constexpr bool is_solid = Cell::dimension == 3;
@@ -56,35 +37,40 @@ public:
 
     [[nodiscard]] const Mesh<Dim, Scalar, Cell>& mesh() const { return m_mesh; }
     [[nodiscard]] const Mat& material() const { return m_material; }
-    [[nodiscard]] const ModelOptions<Scalar>& options() const { return m_options; }
+    [[nodiscard]] const ModelOptions<Scalar>& options() const override { return m_options; }
     [[nodiscard]] Scalar density() const { return m_density; }
+    [[nodiscard]] BodyKind kind() const override {
+        return {.is_linear = is_linear, .is_membrane = is_membrane, .is_solid = is_solid};
+    }
     /// Rest positions `[Dim x n_nodes]`, m.
-    [[nodiscard]] const Points<Dim, Scalar>& rest_positions() const { return m_mesh.nodes; }
+    [[nodiscard]] const Points<Dim, Scalar>& rest_positions() const override { return m_mesh.nodes; }
     /// Lumped masses `[n_nodes]`, kg, all positive with the exact total: row sums of the consistent mass in linear
     /// cells, its diagonal scaled to the cell's mass in quadratic ones.
-    [[nodiscard]] const Values<Scalar>& masses() const { return m_masses; }
+    [[nodiscard]] const Values<Scalar>& masses() const override { return m_masses; }
 
     /// Consistent mass of the free nodes, int rho N_a N_b dV in each direction; lower triangle, kg.
     [[nodiscard]] SparseMatrix<Scalar> consistent_mass(const FreeNodes& free) const;
 
     /// Elastic energy at positions x `[Dim x n_nodes]`, J; not finite where the material does not allow x.
-    [[nodiscard]] Scalar energy(const Points<Dim, Scalar>& x) const;
+    [[nodiscard]] Scalar energy(const Points<Dim, Scalar>& x) const override;
 
     /// How well `energy` is known, whatever the positions: its terms are of the size of E times volume, J.
-    [[nodiscard]] Scalar energy_rounding() const {
+    [[nodiscard]] Scalar energy_rounding() const override {
         return 4 * std::numeric_limits<Scalar>::epsilon() * static_cast<Scalar>(m_material.young) * m_weights.sum();
     }
 
     /// Gradient of the energy `[Dim x n_nodes]`, N: the force that has to act on the nodes to hold them at x.
-    [[nodiscard]] Points<Dim, Scalar> internal_forces(const Points<Dim, Scalar>& x) const;
+    [[nodiscard]] Points<Dim, Scalar> internal_forces(const Points<Dim, Scalar>& x) const override;
+
+    [[nodiscard]] Cliques cells() const override { return cliques_of(m_mesh.cells); }
 
     /// An empty stiffness with the pattern of this body, for `assemble`.
-    [[nodiscard]] Stiffness<Dim, Scalar> make_stiffness(const FreeNodes& free) const {
-        return {free, cliques_of(m_mesh.cells), has_node_patches()};
+    [[nodiscard]] Stiffness<Dim, Scalar> make_stiffness(const FreeNodes& free) const override {
+        return {free, cells(), has_node_patches()};
     }
 
     /// Fills `stiffness` with the exact second derivative of the energy at x, N/m.
-    void assemble(const Points<Dim, Scalar>& x, Stiffness<Dim, Scalar>& stiffness) const;
+    void assemble(const Points<Dim, Scalar>& x, Stiffness<Dim, Scalar>& stiffness) const override;
 
     /// The same as one sparse matrix, lower triangle `[Dim * n_free x Dim * n_free]`.
     [[nodiscard]] SparseMatrix<Scalar> stiffness(const Points<Dim, Scalar>& x, const FreeNodes& free) const {
@@ -92,6 +78,8 @@ public:
         assemble(x, result);
         return result.matrix().assembled();
     }
+
+    [[nodiscard]] std::unique_ptr<const ElasticBody<Dim, Scalar>> preconditioner() const override;
 
     /// Calls `visit(cell, N, dV)` at the points of the mass rule: shape functions `[n_nodes of a cell]` and rest volume
     /// dV (area times thickness), for integrals over the rest body.

@@ -9,54 +9,54 @@ namespace springfit::fem {
 /// The potential whose minimum is the next step. With d = x - x_predicted and v(x) = v_predicted + c1 d (at clamped
 /// nodes both predictions are the prescribed values, so that d = 0),
 ///     Phi = c0/2 d'Md + (1 + alpha) [W(x) - f_ext . d + v_predicted' D d + c1/2 d'Dd] + alpha (M a_n) . d
-template <class M>
-class Dynamics<M>::StepProblem {
+template <int Dim, std::floating_point S>
+class Dynamics<Dim, S>::StepProblem {
 public:
-    using Scalar = typename M::Scalar;
+    using Scalar = S;
 
-    StepProblem(Dynamics& dynamics, Scalar dt) : m_dynamics(&dynamics) {
-        const Scalar alpha = dynamics.m_options.alpha;
-        const Scalar beta = (1 - alpha) * (1 - alpha) / 4;
+    StepProblem(Dynamics& dynamics, S dt) : m_dynamics(&dynamics) {
+        const S alpha = dynamics.m_options.alpha;
+        const S beta = (1 - alpha) * (1 - alpha) / 4;
         c0 = 1 / (beta * dt * dt);
-        c1 = (Scalar(0.5) - alpha) / (beta * dt);
+        c1 = (S(0.5) - alpha) / (beta * dt);
         weight = 1 + alpha;
     }
 
-    Scalar c0;
-    Scalar c1;
-    Scalar weight;
+    S c0;
+    S c1;
+    S weight;
     Nodes positions;            ///< of all nodes; the clamped ones stay as set
     Nodes predicted;            ///< x_predicted
     Nodes predicted_velocities; ///< v_predicted
     Nodes constant;             ///< forces that do not depend on x: the gradient at d = 0 without inertia and W
 
-    [[nodiscard]] Scalar energy(const Values<Scalar>& values) {
+    [[nodiscard]] S energy(const Values<S>& values) {
         const Nodes d = displacement(values);
-        const auto& model = m_dynamics->m_model;
-        const Nodes inertia_and_damping = c0 * d * model.masses().asDiagonal() + weight * c1 * m_dynamics->damped(d);
-        return weight * model.energy(positions) + inertia_and_damping.cwiseProduct(d).sum() / 2 +
+        const auto& body = *m_dynamics->m_body;
+        const Nodes inertia_and_damping = c0 * d * body.masses().asDiagonal() + weight * c1 * m_dynamics->damped(d);
+        return weight * body.energy(positions) + inertia_and_damping.cwiseProduct(d).sum() / 2 +
                constant.cwiseProduct(d).sum();
     }
-    [[nodiscard]] Scalar energy_rounding() const { return m_dynamics->m_model.energy_rounding(); }
-    void gradient(const Values<Scalar>& values, Values<Scalar>& gradient) {
+    [[nodiscard]] S energy_rounding() const { return m_dynamics->m_body->energy_rounding(); }
+    void gradient(const Values<S>& values, Values<S>& gradient) {
         const Nodes d = displacement(values);
-        const auto& model = m_dynamics->m_model;
-        const Nodes total = weight * (model.internal_forces(positions) + c1 * m_dynamics->damped(d)) +
-                            c0 * d * model.masses().asDiagonal() + constant;
-        gradient = m_dynamics->m_free.template gather<dimension, Scalar>(total);
+        const auto& body = *m_dynamics->m_body;
+        const Nodes total = weight * (body.internal_forces(positions) + c1 * m_dynamics->damped(d)) +
+                            c0 * d * body.masses().asDiagonal() + constant;
+        gradient = m_dynamics->m_free.template gather<Dim, S>(total);
     }
     /// With K(x) for K(x_n) in the damping: they differ little, and one matrix serves for both.
-    [[nodiscard]] SymmetricMatrix<Scalar> hessian(const Values<Scalar>& values) {
+    [[nodiscard]] SymmetricMatrix<S> hessian(const Values<S>& values) {
         m_dynamics->m_free.scatter(values, positions);
-        const auto& model = m_dynamics->m_model;
-        model.assemble(positions, m_dynamics->m_stiffness);
-        m_dynamics->m_stiffness.combine(weight * (1 + c1 * model.options().stiffness_damping),
-                                        c0 + weight * c1 * model.options().mass_damping, model.masses());
+        const auto& body = *m_dynamics->m_body;
+        body.assemble(positions, m_dynamics->m_stiffness);
+        m_dynamics->m_stiffness.combine(weight * (1 + c1 * body.options().stiffness_damping),
+                                        c0 + weight * c1 * body.options().mass_damping, body.masses());
         return m_dynamics->m_stiffness.matrix();
     }
 
 private:
-    [[nodiscard]] Nodes displacement(const Values<Scalar>& values) {
+    [[nodiscard]] Nodes displacement(const Values<S>& values) {
         m_dynamics->m_free.scatter(values, positions);
         return positions - predicted;
     }
@@ -64,85 +64,86 @@ private:
     Dynamics* m_dynamics;
 };
 
-template <class M>
-Dynamics<M>::Dynamics(M model, const DynamicsOptions<Scalar>& options) : m_model(std::move(model)), m_options(options) {
-    require(options.alpha >= Scalar(-1) / 3 && options.alpha <= 0, "alpha", "a value in [-1/3, 0]", options.alpha);
+template <int Dim, std::floating_point S>
+Dynamics<Dim, S>::Dynamics(std::shared_ptr<const ElasticBody<Dim, S>> body, const DynamicsOptions<S>& options)
+    : m_body(std::move(body)), m_options(options) {
+    require(options.alpha >= S(-1) / 3 && options.alpha <= 0, "alpha", "a value in [-1/3, 0]", options.alpha);
     require(options.tolerance > 0 && options.tolerance < 1, "tolerance", "a value in (0, 1)", options.tolerance);
     require(options.max_iterations >= 1, "max_iterations", "at least one iteration", options.max_iterations);
     require(options.max_halvings >= 0, "max_halvings", "a number not below 0", options.max_halvings);
-    m_free = FreeNodes(m_model.rest_positions().cols(), {});
-    m_stiffness = m_model.make_stiffness(m_free);
-    if (m_model.options().stiffness_damping > 0) {
+    m_free = FreeNodes(m_body->rest_positions().cols(), {});
+    m_stiffness = m_body->make_stiffness(m_free);
+    if (m_body->options().stiffness_damping > 0) {
         m_damping = m_stiffness;
     }
-    m_model.assemble(m_model.rest_positions(), m_stiffness);
+    m_body->assemble(m_body->rest_positions(), m_stiffness);
     m_stiffest = m_stiffness.matrix().diagonal().maxCoeff();
     m_solver.set_max_diagonal_iterations(detail::diagonal_iterations);
 }
 
-template <class M>
-void Dynamics<M>::use_clamps(const Scenario<dimension, Scalar>& scenario) {
-    std::vector<int> clamped = clamped_nodes(scenario, m_model.rest_positions().cols());
+template <int Dim, std::floating_point S>
+void Dynamics<Dim, S>::use_clamps(const Scenario<Dim, S>& scenario) {
+    std::vector<int> clamped = clamped_nodes(scenario, m_body->rest_positions().cols());
     if (clamped != m_clamped) {
         m_clamped = std::move(clamped);
-        m_free = FreeNodes(m_model.rest_positions().cols(), m_clamped);
-        m_stiffness = m_model.make_stiffness(m_free);
+        m_free = FreeNodes(m_body->rest_positions().cols(), m_clamped);
+        m_stiffness = m_body->make_stiffness(m_free);
         m_solver.reset();
     }
 }
 
 /// Assembles the stiffness part of the damping at these positions, unless it is there already.
-template <class M>
-void Dynamics<M>::take_damping(const Nodes& positions) {
-    if (m_model.options().stiffness_damping > 0 && (m_damping_at.size() == 0 || m_damping_at != positions)) {
-        m_model.assemble(positions, m_damping);
+template <int Dim, std::floating_point S>
+void Dynamics<Dim, S>::take_damping(const Nodes& positions) {
+    if (m_body->options().stiffness_damping > 0 && (m_damping_at.size() == 0 || m_damping_at != positions)) {
+        m_body->assemble(positions, m_damping);
         m_damping_at = positions;
     }
 }
 
 /// D v for velocities of all nodes, N.
-template <class M>
-auto Dynamics<M>::damped(const Nodes& velocities) const -> Nodes {
-    Nodes forces = m_model.options().mass_damping * velocities * m_model.masses().asDiagonal();
-    if (m_model.options().stiffness_damping > 0) {
-        Values<Scalar> product;
+template <int Dim, std::floating_point S>
+auto Dynamics<Dim, S>::damped(const Nodes& velocities) const -> Nodes {
+    Nodes forces = m_body->options().mass_damping * velocities * m_body->masses().asDiagonal();
+    if (m_body->options().stiffness_damping > 0) {
+        Values<S> product;
         m_damping.matrix().multiply(velocities.reshaped(), product);
-        forces.reshaped() += m_model.options().stiffness_damping * product;
+        forces.reshaped() += m_body->options().stiffness_damping * product;
     }
     return forces;
 }
 
 /// Sets the accelerations of the free nodes from the balance of forces at the state itself.
-template <class M>
-void Dynamics<M>::balance(State<dimension, Scalar>& state, const Scenario<dimension, Scalar>& scenario) {
+template <int Dim, std::floating_point S>
+void Dynamics<Dim, S>::balance(State<Dim, S>& state, const Scenario<Dim, S>& scenario) {
     take_damping(state.positions);
-    const Nodes forces = external_forces<dimension, Scalar>(scenario, m_model.masses(), state.time) -
-                         m_model.internal_forces(state.positions) - damped(state.velocities);
+    const Nodes forces = external_forces<Dim, S>(scenario, m_body->masses(), state.time) -
+                         m_body->internal_forces(state.positions) - damped(state.velocities);
     for (int node : m_free.nodes()) {
-        state.accelerations.col(node) = forces.col(node) / m_model.masses()(node);
+        state.accelerations.col(node) = forces.col(node) / m_body->masses()(node);
     }
 }
 
-template <class M>
-auto Dynamics<M>::start(const Scenario<dimension, Scalar>& scenario) -> State<dimension, Scalar> {
-    springfit::validate(scenario, m_model.rest_positions().cols());
+template <int Dim, std::floating_point S>
+auto Dynamics<Dim, S>::start(const Scenario<Dim, S>& scenario) -> State<Dim, S> {
+    springfit::validate(scenario, m_body->rest_positions().cols());
     use_clamps(scenario);
-    State<dimension, Scalar> state;
-    state.positions = initial_positions<dimension, Scalar>(scenario, m_model.rest_positions());
-    state.velocities = initial_velocities<dimension, Scalar>(scenario, m_model.rest_positions());
-    state.accelerations.setZero(dimension, state.positions.cols());
+    State<Dim, S> state;
+    state.positions = initial_positions<Dim, S>(scenario, m_body->rest_positions());
+    state.velocities = initial_velocities<Dim, S>(scenario, m_body->rest_positions());
+    state.accelerations.setZero(Dim, state.positions.cols());
     balance(state, scenario);
     m_last = state;
     return state;
 }
 
-template <class M>
-Status Dynamics<M>::advance(State<dimension, Scalar>& state, const Scenario<dimension, Scalar>& scenario, Scalar dt) {
+template <int Dim, std::floating_point S>
+Status Dynamics<Dim, S>::advance(State<Dim, S>& state, const Scenario<Dim, S>& scenario, S dt) {
     require(dt > 0 && std::isfinite(dt), "dt", "a positive time step", dt);
-    require(state.positions.cols() == m_model.rest_positions().cols(), "state",
-            text(m_model.rest_positions().cols(), " nodes"), state.positions.cols());
+    require(state.positions.cols() == m_body->rest_positions().cols(), "state",
+            text(m_body->rest_positions().cols(), " nodes"), state.positions.cols());
     use_clamps(scenario);
-    State<dimension, Scalar> moved = state;
+    State<Dim, S> moved = state;
     const Status status = step(moved, scenario, dt, m_options.max_halvings);
     if (status == Status::converged) {
         state = std::move(moved);
@@ -150,9 +151,8 @@ Status Dynamics<M>::advance(State<dimension, Scalar>& state, const Scenario<dime
     return status;
 }
 
-template <class M>
-Status Dynamics<M>::step(State<dimension, Scalar>& state, const Scenario<dimension, Scalar>& scenario, Scalar dt,
-                         int halvings) {
+template <int Dim, std::floating_point S>
+Status Dynamics<Dim, S>::step(State<Dim, S>& state, const Scenario<Dim, S>& scenario, S dt, int halvings) {
     const Status status = attempt(state, scenario, dt);
     if (status == Status::converged || halvings == 0) {
         return status;
@@ -161,38 +161,35 @@ Status Dynamics<M>::step(State<dimension, Scalar>& state, const Scenario<dimensi
     return first == Status::converged ? step(state, scenario, dt / 2, halvings - 1) : first;
 }
 
-template <class M>
-Status Dynamics<M>::attempt(State<dimension, Scalar>& state, const Scenario<dimension, Scalar>& scenario, Scalar dt) {
-    const auto masses = m_model.masses().asDiagonal();
-    const Scalar time = state.time + dt;
-    const Scalar alpha = m_options.alpha;
+template <int Dim, std::floating_point S>
+Status Dynamics<Dim, S>::attempt(State<Dim, S>& state, const Scenario<Dim, S>& scenario, S dt) {
+    const auto masses = m_body->masses().asDiagonal();
+    const S time = state.time + dt;
+    const S alpha = m_options.alpha;
     const bool goes_on = m_last.positions.size() > 0 && m_last.time == state.time &&
                          m_last.positions == state.positions && m_last.velocities == state.velocities;
     const Nodes accelerations = goes_on ? m_last.accelerations : state.accelerations; // A_n
     take_damping(state.positions);
 
     StepProblem problem(*this, dt);
-    const Scalar inertia_share = 1 / (problem.c0 * dt * dt); // beta
-    problem.predicted =
-        state.positions + dt * state.velocities + dt * dt * (Scalar(0.5) - inertia_share) * accelerations;
-    problem.predicted_velocities = state.velocities + dt * (Scalar(0.5) + alpha) * accelerations; // 1 - gamma
-    Nodes clamped_accelerations = Nodes::Zero(dimension, state.positions.cols());
+    const S inertia_share = 1 / (problem.c0 * dt * dt); // beta
+    problem.predicted = state.positions + dt * state.velocities + dt * dt * (S(0.5) - inertia_share) * accelerations;
+    problem.predicted_velocities = state.velocities + dt * (S(0.5) + alpha) * accelerations; // 1 - gamma
+    Nodes clamped_accelerations = Nodes::Zero(Dim, state.positions.cols());
     for (const auto& clamp : scenario.clamps) {
         for (int node : clamp.nodes) {
-            const Vector<dimension, Scalar> rest = m_model.rest_positions().col(node);
-            const auto at = [&](Scalar t) -> Vector<dimension, Scalar> {
-                return clamp.position ? clamp.position(rest, t) : rest;
-            };
-            const Scalar h = dt / 2;
-            const Vector<dimension, Scalar> here = at(time);
-            const Vector<dimension, Scalar> ahead = at(time + h);
-            const Vector<dimension, Scalar> behind = at(time - h);
+            const Vector<Dim, S> rest = m_body->rest_positions().col(node);
+            const auto at = [&](S t) -> Vector<Dim, S> { return clamp.position ? clamp.position(rest, t) : rest; };
+            const S h = dt / 2;
+            const Vector<Dim, S> here = at(time);
+            const Vector<Dim, S> ahead = at(time + h);
+            const Vector<Dim, S> behind = at(time - h);
             problem.predicted.col(node) = here;
             problem.predicted_velocities.col(node) = (ahead - behind) / (2 * h);
             clamped_accelerations.col(node) = (ahead - 2 * here + behind) / (h * h);
         }
     }
-    const Nodes loads = external_forces<dimension, Scalar>(scenario, m_model.masses(), time);
+    const Nodes loads = external_forces<Dim, S>(scenario, m_body->masses(), time);
     problem.constant =
         problem.weight * (damped(problem.predicted_velocities) - loads) + alpha * state.accelerations * masses;
 
@@ -201,19 +198,19 @@ Status Dynamics<M>::attempt(State<dimension, Scalar>& state, const Scenario<dime
     for (int node : m_free.nodes()) {
         problem.positions.col(node) += dt * dt * inertia_share * accelerations.col(node);
     }
-    Values<Scalar> x = m_free.template gather<dimension, Scalar>(problem.positions);
+    Values<S> x = m_free.template gather<Dim, S>(problem.positions);
     if (!std::isfinite(problem.energy(x))) {
-        x = m_free.template gather<dimension, Scalar>(state.positions);
+        x = m_free.template gather<Dim, S>(state.positions);
     }
 
     const auto largest = [](const Nodes& nodes) { return nodes.cwiseAbs().maxCoeff(); };
-    const Scalar scale = std::max(std::max(largest(loads), largest(m_model.internal_forces(state.positions))),
-                                  std::max(largest(accelerations * masses), largest(state.velocities * masses) / dt));
-    const Scalar rounding = 8 * std::numeric_limits<Scalar>::epsilon() *
-                            (problem.c0 * m_model.masses().maxCoeff() + m_stiffest) * largest(state.positions);
-    NewtonOptions<Scalar> newton{.max_iterations = m_options.max_iterations};
+    const S scale = std::max(std::max(largest(loads), largest(m_body->internal_forces(state.positions))),
+                             std::max(largest(accelerations * masses), largest(state.velocities * masses) / dt));
+    const S rounding = 8 * std::numeric_limits<S>::epsilon() * (problem.c0 * m_body->masses().maxCoeff() + m_stiffest) *
+                       largest(state.positions);
+    NewtonOptions<S> newton{.max_iterations = m_options.max_iterations};
     newton.gradient_tolerance = std::max(m_options.tolerance * scale, rounding);
-    newton.linear_tolerance = Scalar(1e-3);
+    newton.linear_tolerance = S(1e-3);
     const auto report = minimise(problem, x, m_solver, newton);
     m_iterations += report.iterations;
     const bool done = report.status == Status::converged ||

@@ -387,4 +387,14 @@ void Model<Dim, S, Cell, Mat>::assemble(const Points<Dim, S>& x, Stiffness<Dim, 
     }
 }
 
+template <int Dim, std::floating_point S, FiniteElementCell Cell, Material Mat>
+    requires SpatialDimension<Dim>
+auto Model<Dim, S, Cell, Mat>::preconditioner() const -> std::unique_ptr<const ElasticBody<Dim, S>> {
+    Mat material = m_material;
+    material.poisson = std::min(material.poisson, decltype(material.poisson)(0.4));
+    ModelOptions<S> options = m_options;
+    options.dilatation = Dilatation::pointwise;
+    return std::make_unique<Model>(m_mesh, material, m_density, options);
+}
+
 } // namespace springfit::fem
