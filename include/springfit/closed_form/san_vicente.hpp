@@ -20,19 +20,21 @@ namespace detail {
 
 /// Nominal stress of a lattice of unit cubes along its first axis and across, at the stretches along and across, per
 /// unit of the stiffness of edges, face and body diagonals `[2 x 3]`.
-[[nodiscard]] inline Eigen::Matrix<double, 2, 3> cube_stress(double along, double across) {
-    const double face = std::sqrt((along * along + across * across) / 2); // stretches of the diagonals
-    const double body = std::sqrt((along * along + 2 * across * across) / 3);
-    Eigen::Matrix<double, 2, 3> stress;
+template <std::floating_point Real>
+[[nodiscard]] Eigen::Matrix<Real, 2, 3> cube_stress(Real along, Real across) {
+    const Real face = std::sqrt((along * along + across * across) / 2); // stretches of the diagonals
+    const Real body = std::sqrt((along * along + 2 * across * across) / 3);
+    Eigen::Matrix<Real, 2, 3> stress;
     stress << 4 * (along - 1), 8 * (1 - 1 / face) * along, 4 * (1 - 1 / body) * along, //
         4 * (across - 1), 4 * (1 - 1 / face) * across + 4 * (across - 1), 4 * (1 - 1 / body) * across;
     return stress;
 }
 
 /// The same per unit of strain, in the limit of small strain, with `contraction` across.
-[[nodiscard]] inline Eigen::Matrix<double, 2, 3> cube_stress_rate(double contraction) {
-    const double nu = contraction;
-    Eigen::Matrix<double, 2, 3> rate;
+template <std::floating_point Real>
+[[nodiscard]] Eigen::Matrix<Real, 2, 3> cube_stress_rate(Real contraction) {
+    const Real nu = contraction;
+    Eigen::Matrix<Real, 2, 3> rate;
     rate << 4, 4 - 4 * nu, (4 - 8 * nu) / 3, //
         -4 * nu, 2 - 6 * nu, (4 - 8 * nu) / 3;
     return rate;

@@ -32,7 +32,8 @@ struct ExactOptions {
 /// out of range and for an `initial` of the wrong size or not finite. Cost: some tens to hundreds of products with H,
 /// each O(nodes * (unknowns at a node)^2); memory, twice that of the problem beside it; with Cholesky, a few
 /// factorisations, O(n^2) in space.
-[[nodiscard]] FitReport exact(const FitProblem& problem, const ExactOptions& options = {});
+template <std::same_as<FitProblem> Problem>
+[[nodiscard]] FitReport exact(const Problem& problem, const ExactOptions& options = {});
 
 } // namespace springfit
 

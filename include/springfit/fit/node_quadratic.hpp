@@ -17,6 +17,8 @@ namespace springfit {
 /// H_i is kept as its packed lower triangle, column by column: about valence^2 / 2 numbers per node.
 class NodeQuadratic {
 public:
+    using Unknowns = Values<double>; ///< one value per unknown
+
     /// One node term, seen in place.
     struct Term {
         int node;                     ///< number of the node in the network

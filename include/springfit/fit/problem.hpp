@@ -13,6 +13,8 @@ namespace springfit {
 ///
 /// An unknown that no motion excites has `lower == upper`, its prior; so has one that the caller fixed.
 struct FitProblem {
+    using Unknowns = NodeQuadratic::Unknowns;
+
     NodeQuadratic objective;         ///< Phi
     Parameters parameters;           ///< which spring has which unknown
     Values<double> lower, upper;     ///< [n_unknowns]; infinite where there is no bound

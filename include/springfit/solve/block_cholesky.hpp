@@ -19,7 +19,8 @@ using ColumnLanes = Eigen::Array<double, block_lanes, 1>;
 
 /// Sparse Cholesky factor of a symmetric positive definite matrix over the free coordinates, applied to whole blocks of
 /// right-hand sides: the factor is read once for all columns. Immutable once factorised, so threads may share it.
-class BlockCholesky {
+template <class Factor>
+class BasicBlockCholesky {
 public:
     /// Factorises `lower`, the lower triangle over the coordinates of `free`, for blocks whose nodes have `Dim` rows
     /// each. The analysis is reused while the pattern stays the same. False where the matrix is not positive definite
@@ -50,19 +51,21 @@ public:
 private:
     template <int Columns>
     void substitute(const ColumnBlock& right, ColumnBlock& solution) const {
-        SparseCholesky::Rows<Columns> work(static_cast<Index>(m_rows.size()), Columns);
+        typename Factor::template Rows<Columns> work(static_cast<Index>(m_rows.size()), Columns);
         for (std::size_t r = 0; r < m_rows.size(); ++r) {
             work.row(static_cast<Index>(r)) = right.row(m_rows[r]);
         }
-        m_factor.substitute<Columns>(work);
+        m_factor.template substitute<Columns>(work);
         solution.setZero(right.rows(), right.cols());
         for (std::size_t r = 0; r < m_rows.size(); ++r) {
             solution.row(m_rows[r]) = work.row(static_cast<Index>(r));
         }
     }
 
-    SparseCholesky m_factor;
+    Factor m_factor;
     std::vector<Index> m_rows; ///< row of a block of each unknown, in the order of elimination
 };
+
+using BlockCholesky = BasicBlockCholesky<SparseCholesky>;
 
 } // namespace springfit

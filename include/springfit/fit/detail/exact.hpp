@@ -10,15 +10,18 @@ namespace springfit {
 namespace detail {
 
 /// Primal-dual active set on one fit problem; between its steps the point is within the bounds.
+template <class Problem>
 class ActiveSet {
 public:
-    ActiveSet(const FitProblem& problem, const ExactOptions& options, Values<double> start)
+    using Unknowns = typename Problem::Unknowns;
+
+    ActiveSet(const Problem& problem, const ExactOptions& options, Unknowns start)
         : m_problem(problem), m_options(options), m_curvature(problem.objective.curvature()),
           m_linear(problem.objective.linear()), m_theta(std::move(start)),
           m_solver(problem.objective, m_curvature, options.execution, [this] { return go_on(); }) {
         const Index n = problem.n_unknowns();
         m_side.assign(static_cast<std::size_t>(n), 0);
-        m_weight = Values<double>::Zero(n);
+        m_weight = Unknowns::Zero(n);
         for (Index u = 0; u < n; ++u) {
             if (moves(u)) {
                 m_scale = std::max(m_scale, std::abs(m_linear(u)) / std::sqrt(m_curvature(u)));
@@ -29,7 +32,7 @@ public:
     }
 
     /// The best point so far, and Phi and number of steps into `report`.
-    Values<double> run(FitReport& report) {
+    Unknowns run(FitReport& report) {
         const double offset = report.objective_start - value();
         m_best = m_start_value = value();
         m_best_theta = m_theta;
@@ -73,7 +76,7 @@ private:
     }
 
     /// The gradient of Phi itself.
-    [[nodiscard]] Values<double> own_gradient() const {
+    [[nodiscard]] Unknowns own_gradient() const {
         return m_ridge > 0 ? m_gradient - m_ridge * m_curvature.cwiseProduct(m_theta - m_centre) : m_gradient;
     }
 
@@ -85,7 +88,7 @@ private:
     /// The same of what is being minimised.
     [[nodiscard]] double working_residual() const { return residual(m_gradient); }
 
-    [[nodiscard]] double residual(const Values<double>& gradient) const {
+    [[nodiscard]] double residual(const Unknowns& gradient) const {
         double largest = 0;
         for (Index u = 0; u < m_theta.size(); ++u) {
             if (moves(u)) {
@@ -213,29 +216,30 @@ private:
         }
     }
 
-    const FitProblem& m_problem;
+    const Problem& m_problem;
     const ExactOptions& m_options;
-    Values<double> m_curvature, m_linear, m_theta, m_gradient, m_weight, m_step, m_image;
+    Unknowns m_curvature, m_linear, m_theta, m_gradient, m_weight, m_step, m_image;
     std::vector<signed char> m_side; ///< -1 on the lower bound, 1 on the upper, 0 free, -2 does not move
     Index m_changes = 0;             ///< of sides, by the last choice
     double m_scale = 0;
     double m_accuracy = 0.1; ///< part of the gradient that a solve may leave
     double m_ridge = 0;
     double m_shrink = least_shrink; ///< of the ridge from stage to stage
-    Values<double> m_centre;
+    Unknowns m_centre;
     bool m_stopped = false;
     int m_idle = 0;
     int m_fruitless = 0;
     double m_lowest = std::numeric_limits<double>::infinity();
     double m_residual = 0, m_first_residual = 1;
-    Values<double> m_best_theta;
+    Unknowns m_best_theta;
     double m_best = 0, m_best_residual = 1, m_start_value = 0;
-    FreeSolver m_solver;
+    FreeSolver<decltype(Problem::objective)> m_solver;
 };
 
 } // namespace detail
 
-inline FitReport exact(const FitProblem& problem, const ExactOptions& options) {
+template <std::same_as<FitProblem> Problem>
+FitReport exact(const Problem& problem, const ExactOptions& options) {
     require(options.tolerance > 0 && options.tolerance < 1, "tolerance", "a value in (0, 1)", options.tolerance);
     require(options.max_iterations >= 0, "max_iterations", "a number not below 0", options.max_iterations);
     require(options.initial.size() == 0 || options.initial.size() == problem.n_unknowns(), "initial",
@@ -243,9 +247,9 @@ inline FitReport exact(const FitProblem& problem, const ExactOptions& options) {
     require(options.initial.allFinite(), "initial", "finite values", "a value that is not finite");
     const detail::Stopwatch watch;
     FitReport report;
-    const Values<double> start = options.initial.size() > 0
-                                     ? options.initial.cwiseMax(problem.lower).cwiseMin(problem.upper).eval()
-                                     : problem.prior;
+    const typename Problem::Unknowns start =
+        options.initial.size() > 0 ? options.initial.cwiseMax(problem.lower).cwiseMin(problem.upper).eval()
+                                   : problem.prior;
     report.objective_start = problem.objective.value(start);
     report.theta = detail::ActiveSet(problem, options, start).run(report);
     complete(problem, report);

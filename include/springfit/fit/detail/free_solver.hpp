@@ -17,10 +17,13 @@ namespace springfit::detail {
 /// Conjugate gradients preconditioned by symmetric Gauss-Seidel; once sparse Cholesky is expected to take less work,
 /// preconditioned by the factor of this set, or by that of an earlier one while the two differ little. What decides is
 /// a count of operations, not of seconds, so that results repeat.
+template <class Objective>
 class FreeSolver {
 public:
+    using Unknowns = typename Objective::Unknowns;
+
     /// `curvature` is the diagonal of H; `go_on` is asked now and then.
-    FreeSolver(const NodeQuadratic& objective, const Values<double>& curvature, const Execution& execution,
+    FreeSolver(const Objective& objective, const Unknowns& curvature, const Execution& execution,
                std::function<bool()> go_on)
         : m_objective(objective), m_curvature(curvature), m_execution(execution), m_product(objective, execution),
           m_go_on(std::move(go_on)) {}
@@ -40,7 +43,7 @@ public:
     }
 
     /// result = H x; returns x'H x.
-    double multiply(const Values<double>& x, Values<double>& result) {
+    double multiply(const Unknowns& x, Unknowns& result) {
         ++m_n_products;
         double square = m_product(x, result);
         if (m_ridge > 0) {
@@ -52,14 +55,13 @@ public:
     }
 
     /// Largest scaled gradient |g_u| / sqrt(H_uu) of the unknowns to move: `weight` is 1 / H_uu for them, 0 for others.
-    [[nodiscard]] static double largest(const Values<double>& weight, const Values<double>& gradient) {
+    [[nodiscard]] static double largest(const Unknowns& weight, const Unknowns& gradient) {
         return weight.size() == 0 ? 0. : std::sqrt((weight.array() * gradient.array().square()).maxCoeff());
     }
 
     /// Moves theta, and its whole gradient along, until `largest` is not above `target` or rounding prevents that;
     /// false where `go_on` said stop. `final` is the target of the last set, from which the work to come is estimated.
-    bool solve(const Values<double>& weight, double target, double final, Values<double>& theta,
-               Values<double>& gradient) {
+    bool solve(const Unknowns& weight, double target, double final, Unknowns& theta, Unknowns& gradient) {
         m_final = final;
         if (!m_direct) {
             const Outcome outcome = by_sweeps(weight, target, theta, gradient);
@@ -119,7 +121,7 @@ private:
 
     /// In single precision as long as that makes the gradient smaller: with half the numbers to move a sweep takes half
     /// the time, and the gradient that comes next is found in double precision.
-    Outcome by_sweeps(const Values<double>& weight, double target, Values<double>& theta, Values<double>& gradient) {
+    Outcome by_sweeps(const Unknowns& weight, double target, Unknowns& theta, Unknowns& gradient) {
         double size = largest(weight, gradient);
         if (size > target && !m_single && !m_double) {
             m_single.emplace(m_objective, m_curvature, m_execution);
@@ -146,8 +148,8 @@ private:
     }
 
     template <class Scalar>
-    Outcome by_sweeps(SweepGradients<Scalar>& gradients, const Values<double>& weight, double size, double target,
-                      Values<double>& theta, Values<double>& gradient) {
+    Outcome by_sweeps(SweepGradients<Scalar>& gradients, const Unknowns& weight, double size, double target,
+                      Unknowns& theta, Unknowns& gradient) {
         constexpr double accuracy = std::is_same_v<Scalar, float> ? 1e-4 : 1e-15;
         gradients.start(weight, gradient, m_ridge, size);
         Outcome outcome = Outcome::solved;
@@ -175,8 +177,7 @@ private:
         return outcome;
     }
 
-    Outcome by_factor(const Values<double>& weight, double target, Values<double>& theta, Values<double>& gradient,
-                      int max_iterations) {
+    Outcome by_factor(const Unknowns& weight, double target, Unknowns& theta, Unknowns& gradient, int max_iterations) {
         double size = largest(weight, gradient);
         double square = 0;
         double first = 0;
@@ -212,10 +213,10 @@ private:
         return Outcome::solved;
     }
 
-    const NodeQuadratic& m_objective;
-    Values<double> m_curvature;
+    const Objective& m_objective;
+    Unknowns m_curvature;
     Execution m_execution;
-    NodeProduct m_product;
+    NodeProduct<Objective> m_product;
     std::function<bool()> m_go_on;
     std::optional<SweepGradients<float>> m_single;
     std::optional<SweepGradients<double>> m_double; ///< once the other is of no more use
@@ -226,9 +227,9 @@ private:
     int m_before = 0; ///< products when the matrix last changed
     int m_n_factorisations = 0;
     bool m_direct = false;
-    std::optional<MaskedCholesky> m_factor;
-    Values<double> m_factorised; ///< the weight of the last factorisation
-    Values<double> m_direction, m_image, m_preconditioned, m_moved, m_terms;
+    std::optional<MaskedCholesky<Objective>> m_factor;
+    Unknowns m_factorised; ///< the weight of the last factorisation
+    Unknowns m_direction, m_image, m_preconditioned, m_moved, m_terms;
 };
 
 } // namespace springfit::detail

@@ -81,11 +81,13 @@ struct ImplicitSystem {
     }
 };
 
-inline Eigen::ArrayXd column_dots(const ColumnBlock& a, const ColumnBlock& b) {
+template <class Block>
+Eigen::ArrayXd column_dots(const Block& a, const Block& b) {
     return a.cwiseProduct(b).colwise().sum().transpose().array();
 }
 
-inline Eigen::ArrayXd column_maxima(const ColumnBlock& a) {
+template <class Block>
+Eigen::ArrayXd column_maxima(const Block& a) {
     return a.cwiseAbs().colwise().maxCoeff().transpose().array();
 }
 

@@ -10,10 +10,13 @@ namespace springfit::detail {
 ///
 /// Rows and columns of the others are replaced by those of the identity, so the pattern, and with it the ordering and
 /// the symbolic analysis, is that of the whole H for every set. H is scaled to a unit diagonal.
+template <class Objective>
 class MaskedCholesky {
 public:
+    using Unknowns = typename Objective::Unknowns;
+
     /// `curvature` is the diagonal of H.
-    MaskedCholesky(const NodeQuadratic& objective, const Values<double>& curvature)
+    MaskedCholesky(const Objective& objective, const Unknowns& curvature)
         : m_inverse_root((curvature.array() > 0).select(curvature.array().rsqrt(), 1.)),
           m_hessian(objective.hessian()) {
         for (int c = 0; c < m_hessian.outerSize(); ++c) {
@@ -29,7 +32,7 @@ public:
     /// singular.
     ///
     /// The diagonal is raised by another 1e-14 of itself, or by as much more as keeps the pivots positive.
-    [[nodiscard]] bool factorise(const Values<double>& weight, double ridge) {
+    [[nodiscard]] bool factorise(const Unknowns& weight, double ridge) {
         for (int c = 0; c < m_masked.outerSize(); ++c) {
             for (SparseMatrix<double>::InnerIterator entry(m_masked, c); entry; ++entry) {
                 const bool kept = weight(c) != 0 && weight(entry.row()) != 0;
@@ -49,7 +52,7 @@ public:
     }
 
     /// x = H_FF^-1 b, for b that is 0 where nothing is free.
-    void solve(const Values<double>& b, Values<double>& x) {
+    void solve(const Unknowns& b, Unknowns& x) {
         m_scaled = b.cwiseProduct(m_inverse_root);
         m_factor.solve(m_scaled, x);
         x.array() *= m_inverse_root.array();
@@ -60,7 +63,7 @@ public:
     [[nodiscard]] double flops() const { return m_factor.flops() / SparseCholesky::relative_speed; }
 
 private:
-    Values<double> m_inverse_root, m_scaled;
+    Unknowns m_inverse_root, m_scaled;
     SparseMatrix<double> m_hessian, m_masked; ///< lower triangles
     SparseCholesky m_factor;
 };

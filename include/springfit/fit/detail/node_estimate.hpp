@@ -16,10 +16,13 @@ namespace detail {
 inline constexpr double proximity = 1e-11;
 
 /// One node term on its own.
+template <class Problem>
 class NodeEstimate {
 public:
+    using Unknowns = typename Problem::Unknowns;
+
     /// Writes for each unknown of the term its estimate and the weight of that.
-    void solve(const FitProblem& problem, const NodeQuadratic::Occurrences& occurrences, Index i, double* estimate,
+    void solve(const Problem& problem, const NodeQuadratic::Occurrences& occurrences, Index i, double* estimate,
                double* weight) {
         const NodeQuadratic::Term term = problem.objective.term(i);
         const Index n = term.size();
@@ -83,7 +86,7 @@ private:
         }
     }
 
-    Values<double> m_root, m_linear, m_target, m_lower, m_upper, m_x;
+    Unknowns m_root, m_linear, m_target, m_lower, m_upper, m_x;
     DenseMatrix<double> m_hessian, m_block, m_inverse;
     std::vector<Index> m_moving;
     BoundedLeastSquares m_solver;
@@ -100,19 +103,20 @@ private:
     std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
 };
 
-inline Values<double> one_pass_values(const FitProblem& problem, const Execution& execution) {
-    const NodeQuadratic& objective = problem.objective;
+template <class Problem>
+typename Problem::Unknowns one_pass_values(const Problem& problem, const Execution& execution) {
+    const auto& objective = problem.objective;
     const auto occurrences = objective.occurrences();
     std::vector<double> estimates(static_cast<std::size_t>(objective.n_columns()));
     std::vector<double> weights(estimates.size());
     execution.for_chunks(objective.n_terms(), 64, [&](Index, Index begin, Index end) {
-        NodeEstimate node;
+        NodeEstimate<Problem> node;
         for (Index i = begin; i < end; ++i) {
             const Index first = objective.first_column(i);
             node.solve(problem, occurrences, i, estimates.data() + first, weights.data() + first);
         }
     });
-    Values<double> theta = problem.prior;
+    typename Problem::Unknowns theta = problem.prior;
     for (Index u = 0; u < theta.size(); ++u) {
         double sum = 0;
         double total = 0;

@@ -9,9 +9,12 @@ namespace springfit::detail {
 /// H x of a node quadratic, many times over: every term into its own place first, then every unknown sums what its
 /// terms have for it, in their order. So terms and unknowns are independent of each other, and the bits do not depend
 /// on the number of threads. Memory: about 20 bytes per column of a term.
+template <class Objective>
 class NodeProduct {
 public:
-    NodeProduct(const NodeQuadratic& objective, const Execution& execution)
+    using Unknowns = typename Objective::Unknowns;
+
+    NodeProduct(const Objective& objective, const Execution& execution)
         : m_objective(objective), m_execution(execution) {
         m_begin.reserve(static_cast<std::size_t>(objective.n_terms()) + 1);
         m_begin.push_back(0);
@@ -28,7 +31,7 @@ public:
     }
 
     /// result = H x `[n_unknowns]`; returns x'H x.
-    double operator()(const Values<double>& x, Values<double>& result) {
+    double operator()(const Unknowns& x, Unknowns& result) {
         m_execution.for_chunks(m_objective.n_terms(), terms_per_chunk,
                                [&](Index, Index begin, Index end) { multiply(x, begin, end); });
         result.resize(x.size());
@@ -54,8 +57,8 @@ private:
 
     /// H_i x_i of some terms. What they need of x is gathered for a few of them before they are multiplied: a vector
     /// load right after the scalar stores that it reads would wait for them.
-    void multiply(const Values<double>& x, Index begin, Index end) {
-        Values<double> gathered;
+    void multiply(const Unknowns& x, Index begin, Index end) {
+        Unknowns gathered;
         for (Index first = begin; first < end; first += terms_at_once) {
             const Index last = std::min(end, first + terms_at_once);
             const Index offset = m_begin[static_cast<std::size_t>(first)];
@@ -81,13 +84,13 @@ private:
         }
     }
 
-    const NodeQuadratic& m_objective;
+    const Objective& m_objective;
     Execution m_execution;
     std::vector<Index> m_begin; ///< per term, its entries of m_image
-    Values<double> m_image;     ///< H_i x_i of all terms
+    Unknowns m_image;           ///< H_i x_i of all terms
     std::vector<Index> m_first; ///< per unknown, its entries of m_place
     std::vector<int> m_place;   ///< what an unknown gets, in m_image
-    Values<double> m_partial;   ///< x'H x by chunks of unknowns
+    Unknowns m_partial;         ///< x'H x by chunks of unknowns
 };
 
 } // namespace springfit::detail

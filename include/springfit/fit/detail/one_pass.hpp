@@ -6,7 +6,8 @@
 
 namespace springfit {
 
-inline FitReport one_pass(const FitProblem& problem, const OnePassOptions& options) {
+template <std::same_as<FitProblem> Problem>
+FitReport one_pass(const Problem& problem, const OnePassOptions& options) {
     const detail::Stopwatch watch;
     FitReport report;
     report.theta = detail::one_pass_values(problem, options.execution);

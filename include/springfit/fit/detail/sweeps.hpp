@@ -12,16 +12,19 @@ namespace springfit {
 namespace detail {
 
 /// Block descent on Phi with all that it keeps up to date: theta, node terms, their gradients, and the gradient.
+template <class Problem>
 class BlockDescent {
 public:
-    BlockDescent(const FitProblem& problem, Values<double> theta)
+    using Unknowns = typename Problem::Unknowns;
+
+    BlockDescent(const Problem& problem, Unknowns theta)
         : m_problem(problem), m_objective(problem.objective), m_occurrences(m_objective.occurrences()),
           m_theta(std::move(theta)) {
         find_blocks();
         refresh();
     }
 
-    [[nodiscard]] const Values<double>& theta() const { return m_theta; }
+    [[nodiscard]] const Unknowns& theta() const { return m_theta; }
 
     /// Recomputes from theta what the visits carry along.
     void refresh() {
@@ -53,7 +56,7 @@ private:
     struct Block {
         std::vector<int> columns;    ///< unknowns that may move
         DenseMatrix<double> hessian; ///< of Phi over them, scaled to a unit diagonal, with the proximity
-        Values<double> root;         ///< the scale: sqrt of the diagonal
+        Unknowns root;               ///< the scale: sqrt of the diagonal
     };
 
     [[nodiscard]] std::size_t block_of(Index term) const {
@@ -164,32 +167,33 @@ private:
         }
     }
 
-    const FitProblem& m_problem;
+    const Problem& m_problem;
     const NodeQuadratic& m_objective;
     NodeQuadratic::Occurrences m_occurrences;
     std::vector<Block> m_blocks;
     std::vector<int> m_block_of_term;
 
-    Values<double> m_theta, m_gradient;
+    Unknowns m_theta, m_gradient;
     std::vector<double> m_term_gradient; ///< H_i theta_i - g_i of all terms, beside their columns
     std::vector<double> m_dominance;     ///< Phi_i, summed over the nodes of each block
     IndexedHeap m_heap;
     std::vector<int> m_touched;
-    Values<double> m_step, m_linear, m_lower, m_upper;
+    Unknowns m_step, m_linear, m_lower, m_upper;
     BoundedLeastSquares m_solver;
 };
 
-inline Values<double> sweep_start(const FitProblem& problem, const DominantTermOptions& options) {
+template <class Problem>
+typename Problem::Unknowns sweep_start(const Problem& problem, const DominantTermOptions& options) {
     require(options.initial.size() == 0 || options.initial.size() == problem.n_unknowns(), "initial",
             text(problem.n_unknowns(), " values, one per unknown"), options.initial.size());
     require(options.initial.allFinite(), "initial", "finite values", "a value that is not finite");
-    const Values<double> given = options.initial.size() > 0
-                                     ? options.initial.cwiseMax(problem.lower).cwiseMin(problem.upper).eval()
-                                     : problem.prior;
+    const typename Problem::Unknowns given =
+        options.initial.size() > 0 ? options.initial.cwiseMax(problem.lower).cwiseMin(problem.upper).eval()
+                                   : problem.prior;
     if (options.start == SweepStart::given) {
         return given;
     }
-    const Values<double> estimate = one_pass_values(problem, options.execution);
+    const typename Problem::Unknowns estimate = one_pass_values(problem, options.execution);
     const bool keep_given =
         options.start == SweepStart::better && problem.objective.value(given) < problem.objective.value(estimate);
     return keep_given ? given : estimate;
@@ -197,7 +201,8 @@ inline Values<double> sweep_start(const FitProblem& problem, const DominantTermO
 
 } // namespace detail
 
-inline FitReport dominant_term(const FitProblem& problem, const DominantTermOptions& options) {
+template <std::same_as<FitProblem> Problem>
+FitReport dominant_term(const Problem& problem, const DominantTermOptions& options) {
     require(options.max_sweeps >= 0, "max_sweeps", "a number not below 0", options.max_sweeps);
     require(options.tolerance >= 0, "tolerance", "a value not below 0", options.tolerance);
     const detail::Stopwatch watch;
@@ -212,7 +217,7 @@ inline FitReport dominant_term(const FitProblem& problem, const DominantTermOpti
     int idle = 0;               // sweeps since the residual was lowest
     constexpr int patience = 5; // of them, while Phi stands still, before giving up
     const double rounding =
-        std::numeric_limits<double>::epsilon() * problem.objective.value(Values<double>::Zero(problem.n_unknowns()));
+        std::numeric_limits<double>::epsilon() * problem.objective.value(Problem::Unknowns::Zero(problem.n_unknowns()));
     while (true) {
         if (residual <= options.tolerance) {
             report.status = Status::converged;
