@@ -18,11 +18,33 @@ function(springfit_compiled_sources variable)
   set(${variable} ${sources} PARENT_SCOPE)
 endfunction()
 
-# springfit::compiled: core's templates for the plane and space, in double and float.
+# springfit_add_instantiations(<target>): a static library of the instantiations that include/springfit/compiled lists.
+function(springfit_add_instantiations target)
+  file(GLOB lists CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/include/springfit/compiled/*.ipp")
+  set(names)
+  foreach(list IN LISTS lists)
+    get_filename_component(name "${list}" NAME_WE)
+    list(APPEND names ${name})
+  endforeach()
+  springfit_compiled_sources(sources ${names})
+  add_library(${target} STATIC ${sources})
+  target_link_libraries(${target} PUBLIC springfit::core)
+  target_precompile_headers(${target} PRIVATE <springfit/springfit.hpp>)
+endfunction()
+
+# springfit::compiled: core's templates in the plane and in space, in double and float. Its factors are CHOLMOD's where
+# that component is there, and then so are those of all that link it.
 function(springfit_add_compiled)
-  file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/compiled/stub.cpp" CONTENT "// nothing yet\n")
-  add_library(springfit_compiled STATIC "${PROJECT_BINARY_DIR}/compiled/stub.cpp")
-  target_link_libraries(springfit_compiled PUBLIC springfit::core)
+  springfit_add_instantiations(springfit_compiled)
+  file(GLOB lists CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/include/springfit/compiled/*.ipp")
+  target_sources(springfit_compiled PUBLIC FILE_SET HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}/include"
+                 FILES ${lists} "${PROJECT_SOURCE_DIR}/include/springfit/compiled/compiled.hpp")
+  if(TARGET springfit::cholmod)
+    target_link_libraries(springfit_compiled PUBLIC springfit::cholmod)
+  endif()
+  if(SPRINGFIT_NATIVE) # vectors and their alignment are of one kind in all of a program
+    target_compile_options(springfit_compiled PUBLIC -march=native)
+  endif()
 endfunction()
 
 # springfit::compiled_cgal: what CGAL does for springfit; its users need not see CGAL's headers.

@@ -29,50 +29,13 @@ public:
     [[nodiscard]] Scalar weight(Index term) const { return (*m_weights)(term); }
 
     /// y = A x. O(entries).
-    void multiply(const Values<Scalar>& x, Values<Scalar>& y) const {
-        y.noalias() = m_lower->template selfadjointView<Eigen::Lower>() * x;
-        for (Index p = 0; p < n_terms(); ++p) {
-            Scalar along = 0;
-            for (typename SparseMatrix<Scalar>::InnerIterator entry(*m_columns, p); entry; ++entry) {
-                along += entry.value() * x(entry.row());
-            }
-            along *= weight(p);
-            for (typename SparseMatrix<Scalar>::InnerIterator entry(*m_columns, p); entry; ++entry) {
-                y(entry.row()) += along * entry.value();
-            }
-        }
-    }
+    void multiply(const Values<Scalar>& x, Values<Scalar>& y) const;
 
     /// The diagonal of A.
-    [[nodiscard]] Values<Scalar> diagonal() const {
-        Values<Scalar> diagonal(size());
-        for (Index i = 0; i < size(); ++i) {
-            diagonal(i) = m_lower->valuePtr()[m_lower->outerIndexPtr()[i]];
-        }
-        for (Index p = 0; p < n_terms(); ++p) {
-            for (typename SparseMatrix<Scalar>::InnerIterator entry(*m_columns, p); entry; ++entry) {
-                diagonal(entry.row()) += weight(p) * entry.value() * entry.value();
-            }
-        }
-        return diagonal;
-    }
+    [[nodiscard]] Values<Scalar> diagonal() const;
 
     /// The lower triangle of A with the rank-one terms multiplied out.
-    [[nodiscard]] SparseMatrix<Scalar> assembled() const {
-        if (n_terms() == 0) {
-            return *m_lower;
-        }
-        SparseMatrix<Scalar> weighted = *m_columns;
-        for (Index p = 0; p < n_terms(); ++p) {
-            for (typename SparseMatrix<Scalar>::InnerIterator entry(weighted, p); entry; ++entry) {
-                entry.valueRef() *= weight(p);
-            }
-        }
-        const SparseMatrix<Scalar> transposed = m_columns->transpose();
-        const SparseMatrix<Scalar> product = weighted * transposed;
-        SparseMatrix<Scalar> lower_product = product.template triangularView<Eigen::Lower>();
-        return *m_lower + lower_product;
-    }
+    [[nodiscard]] SparseMatrix<Scalar> assembled() const;
 
 private:
     const SparseMatrix<Scalar>* m_lower;
@@ -81,3 +44,5 @@ private:
 };
 
 } // namespace springfit
+
+#include <springfit/solve/detail/symmetric_matrix.hpp>

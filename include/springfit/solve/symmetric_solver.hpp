@@ -43,123 +43,25 @@ public:
 
     /// The solution to a relative residual of `tolerance`; false where no factorisation could be had.
     [[nodiscard]] bool solve(const SymmetricMatrix<Scalar>& a, const Values<Scalar>& b, Values<Scalar>& x,
-                             Scalar tolerance) {
-        if (m_factorised && m_max_cg_iterations > 0 &&
-            conjugate_gradients(a, b, x, tolerance, m_max_cg_iterations,
-                                [&](const Values<Scalar>& r, Values<Scalar>& z) { z = apply_factor(r); }) ==
-                CgOutcome::solved) {
-            return true;
-        }
-        m_factorised = false; // too far away by now
-        if (m_max_diagonal_iterations > 0) {
-            const Values<Scalar> inverse = a.diagonal().unaryExpr([](Scalar d) { return d > 0 ? 1 / d : Scalar(1); });
-            const auto outcome =
-                conjugate_gradients(a, b, x, tolerance, m_max_diagonal_iterations,
-                                    [&](const Values<Scalar>& r, Values<Scalar>& z) { z = inverse.cwiseProduct(r); });
-            if (outcome == CgOutcome::solved || (outcome == CgOutcome::indefinite && b.dot(x) > 0)) {
-                return true;
-            }
-        }
-        if (!factorise(a)) {
-            return false;
-        }
-        x = apply_factor(b);
-        return x.allFinite();
-    }
+                             Scalar tolerance);
 
     /// Factorises anew. The shift that made the matrix positive definite is `shift()`, 0 where none was needed.
-    [[nodiscard]] bool factorise(const SymmetricMatrix<Scalar>& a) {
-        SparseMatrix<double> matrix = a.lower().template cast<double>();
-        if (a.n_terms() > 0) {
-            extend(a, matrix);
-        }
-        m_shift = 0;
-        m_factorised = false;
-        m_size = a.size();
-        for (int attempt = 0; attempt < 10 && !m_factorised; ++attempt) {
-            if (attempt == 0) {
-                m_factorised = try_factorising(a, matrix);
-            } else {
-                m_shift = (m_shift > 0) ? 100 * m_shift : std::sqrt(std::numeric_limits<Scalar>::epsilon());
-                SparseMatrix<double> shifted = matrix;
-                for (Index i = 0; i < m_size; ++i) {
-                    double& diagonal = shifted.valuePtr()[shifted.outerIndexPtr()[i]];
-                    diagonal += m_shift * std::max<double>(std::abs(diagonal), std::numeric_limits<Scalar>::min());
-                }
-                m_factorised = try_factorising(a, shifted);
-            }
-        }
-        m_n_factorisations += m_factorised ? 1 : 0;
-        return m_factorised;
-    }
+    [[nodiscard]] bool factorise(const SymmetricMatrix<Scalar>& a);
 
     /// Applies the present factorisation.
-    [[nodiscard]] Values<Scalar> apply_factor(const Values<Scalar>& b) const {
-        Values<double> x;
-        if (!m_has_terms) {
-            m_factor.solve(b.template cast<double>(), x);
-            return x.template cast<Scalar>();
-        }
-        Values<double> extended = Values<double>::Zero(m_extended_factor.rows());
-        extended.head(b.size()) = b.template cast<double>();
-        x = m_extended_factor.solve(extended);
-        return x.head(b.size()).template cast<Scalar>();
-    }
+    [[nodiscard]] Values<Scalar> apply_factor(const Values<Scalar>& b) const;
 
     [[nodiscard]] Scalar shift() const { return m_shift; }
     [[nodiscard]] int n_factorisations() const { return m_n_factorisations; }
 
 private:
-    [[nodiscard]] bool try_factorising(const SymmetricMatrix<Scalar>& a, const SparseMatrix<double>& matrix) {
-        const bool new_pattern = !m_analysed || m_has_terms != (a.n_terms() > 0);
-        m_has_terms = a.n_terms() > 0;
-        m_analysed = true;
-        if (!m_has_terms) {
-            if (new_pattern) {
-                m_factor.analyse(matrix);
-            }
-            return m_factor.factorise(matrix);
-        }
-        if (new_pattern) {
-            m_extended_factor.analyzePattern(matrix);
-        }
-        m_extended_factor.factorize(matrix);
-        return m_extended_factor.info() == Eigen::Success && pivots_agree(a);
-    }
+    [[nodiscard]] bool try_factorising(const SymmetricMatrix<Scalar>& a, const SparseMatrix<double>& matrix);
 
     /// Extends the lower triangle by one more unknown per rank-one term. The pattern depends on that of `a` alone.
-    static void extend(const SymmetricMatrix<Scalar>& a, SparseMatrix<double>& matrix) {
-        const Index n = a.size();
-        const Index terms = a.n_terms();
-        const SparseMatrix<Scalar> rows = a.columns().transpose();
-        SparseMatrix<double> extended(n + terms, n + terms);
-        extended.reserve(matrix.nonZeros() + rows.nonZeros() + terms);
-        for (Index i = 0; i < n; ++i) {
-            extended.startVec(i);
-            for (SparseMatrix<double>::InnerIterator entry(matrix, i); entry; ++entry) {
-                extended.insertBack(entry.row(), i) = entry.value();
-            }
-            for (typename SparseMatrix<Scalar>::InnerIterator entry(rows, i); entry; ++entry) {
-                extended.insertBack(n + entry.row(), i) = entry.value() * std::sqrt(std::abs(a.weight(entry.row())));
-            }
-        }
-        for (Index p = 0; p < terms; ++p) {
-            extended.startVec(n + p);
-            extended.insertBack(n + p, n + p) = a.weight(p) < 0 ? 1 : -1;
-        }
-        extended.finalize();
-        matrix.swap(extended);
-    }
+    static void extend(const SymmetricMatrix<Scalar>& a, SparseMatrix<double>& matrix);
 
     /// True where A is positive definite: as many negative pivots as terms of positive weight.
-    [[nodiscard]] bool pivots_agree(const SymmetricMatrix<Scalar>& a) const {
-        const Values<double> pivots = m_extended_factor.vectorD();
-        Index expected = 0;
-        for (Index p = 0; p < a.n_terms(); ++p) {
-            expected += a.weight(p) < 0 ? 0 : 1;
-        }
-        return pivots.allFinite() && (pivots.array() < 0).count() == expected;
-    }
+    [[nodiscard]] bool pivots_agree(const SymmetricMatrix<Scalar>& a) const;
 
     SparseCholesky m_factor; ///< of matrices without rank-one terms
     Eigen::SimplicialLDLT<SparseMatrix<double>, Eigen::Lower> m_extended_factor;
@@ -174,3 +76,5 @@ private:
 };
 
 } // namespace springfit
+
+#include <springfit/solve/detail/symmetric_solver.hpp>

@@ -36,29 +36,7 @@ public:
     /// before the negative curvature or, from the fallback, the solution of a shifted one: both go downhill for
     /// b = -gradient. False where none could be had.
     [[nodiscard]] bool solve(const SymmetricMatrix<Scalar>& a, const Values<Scalar>& b, Values<Scalar>& x,
-                             Scalar tolerance) {
-        m_met_negative_curvature = false;
-        if (m_factor.is_usable() && m_n_slow < 2) {
-            const auto outcome =
-                conjugate_gradients(a, b, x, tolerance, max_iterations,
-                                    [&](const Values<Scalar>& r, Values<Scalar>& z) { m_factor.apply(r, z); });
-            if (outcome == CgOutcome::solved) {
-                m_n_slow = 0;
-                return true;
-            }
-            if (outcome == CgOutcome::indefinite) {
-                m_met_negative_curvature = true;
-                if (!(b.dot(x) > 0)) { // at the first iteration
-                    m_factor.apply(b, x);
-                }
-                if (x.allFinite()) {
-                    return true;
-                }
-            }
-            ++m_n_slow;
-        }
-        return m_fallback.solve(a, b, x, tolerance);
-    }
+                             Scalar tolerance);
 
     /// The last matrix was not positive definite along a direction that conjugate gradients took.
     [[nodiscard]] bool met_negative_curvature() const { return m_met_negative_curvature; }
@@ -73,3 +51,5 @@ private:
 };
 
 } // namespace springfit
+
+#include <springfit/solve/detail/turned_solver.hpp>

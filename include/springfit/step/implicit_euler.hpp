@@ -41,11 +41,7 @@ public:
         return detail::start_network<Dim, Scalar>(m_network, scenario);
     }
 
-    [[nodiscard]] Status advance(State<Dim, Scalar>& state, const Scenario<Dim, Scalar>& scenario, Scalar dt) {
-        require(dt > 0 && std::isfinite(dt), "dt", "a positive time step", dt);
-        return detail::advance_body<Dim, Scalar>(m_network, m_body, state, scenario, dt,
-                                                 [](Status status) { return status == Status::converged; });
-    }
+    [[nodiscard]] Status advance(State<Dim, Scalar>& state, const Scenario<Dim, Scalar>& scenario, Scalar dt);
 
 private:
     SpringNetwork<Dim, Scalar> m_network;
@@ -53,3 +49,5 @@ private:
 };
 
 } // namespace springfit
+
+#include <springfit/step/detail/implicit_euler.hpp>

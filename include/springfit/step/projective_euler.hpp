@@ -29,12 +29,7 @@ public:
         return detail::start_network<Dim, Scalar>(m_network, scenario);
     }
 
-    [[nodiscard]] Status advance(State<Dim, Scalar>& state, const Scenario<Dim, Scalar>& scenario, Scalar dt) {
-        require(dt > 0 && std::isfinite(dt), "dt", "a positive time step", dt);
-        const Status status = detail::advance_body<Dim, Scalar>(m_network, m_body, state, scenario, dt,
-                                                                [](Status s) { return usable(s); });
-        return usable(status) ? Status::converged : status;
-    }
+    [[nodiscard]] Status advance(State<Dim, Scalar>& state, const Scenario<Dim, Scalar>& scenario, Scalar dt);
 
 private:
     SpringNetwork<Dim, Scalar> m_network;
@@ -42,3 +37,5 @@ private:
 };
 
 } // namespace springfit
+
+#include <springfit/step/detail/projective_euler.hpp>

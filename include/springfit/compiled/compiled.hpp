@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// All of core, and which of its templates `springfit::compiled` holds: with that library linked, include this in the
+/// place of `<springfit/springfit.hpp>` (or as well), and they are not compiled again.
+///
+/// In the plane and in space, in double and float; for the FEM, each plane and solid element with each material, in
+/// double. Everything else is instantiated where it is used, as without it. The lists, one file per part, say `extern
+/// template` here and `template` in the library's own units.
+
+#include <springfit/springfit.hpp>
+
+#define SPRINGFIT_INSTANTIATION extern template
+
+#include <springfit/compiled/closed_form.ipp>
+#include <springfit/compiled/fem_hex8.ipp>
+#include <springfit/compiled/fem_quad4.ipp>
+#include <springfit/compiled/fem_solvers.ipp>
+#include <springfit/compiled/fem_tet10.ipp>
+#include <springfit/compiled/fem_tet4.ipp>
+#include <springfit/compiled/fem_tri3.ipp>
+#include <springfit/compiled/fem_tri6.ipp>
+#include <springfit/compiled/fit_acceleration.ipp>
+#include <springfit/compiled/fit_trajectory_2d.ipp>
+#include <springfit/compiled/fit_trajectory_3d.ipp>
+#include <springfit/compiled/network.ipp>
+#include <springfit/compiled/score.ipp>
+#include <springfit/compiled/solve.ipp>
+#include <springfit/compiled/step_bodies.ipp>
+#include <springfit/compiled/step_steppers.ipp>

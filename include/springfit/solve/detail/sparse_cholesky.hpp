@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <springfit/solve/sparse_cholesky.hpp>
+
+namespace springfit {
+
+template <class Factor>
+void BasicSparseCholesky<Factor>::analyse(const SparseMatrix<double>& lower, int group) {
+    m_pattern_size = lower.nonZeros();
+    m_order = Factor::order(graph_of(lower, group));
+    m_place.resize(lower.cols());
+    for (std::size_t p = 0; p < m_order.size(); ++p) {
+        for (int d = 0; d < group; ++d) {
+            m_place.indices()(group * m_order[p] + d) = group * static_cast<int>(p) + d;
+        }
+    }
+    m_factor.analyse(ordered(lower));
+}
+
+template <class Factor>
+bool BasicSparseCholesky<Factor>::factorise(const SparseMatrix<double>& lower, double margin, int group) {
+    if (m_place.size() != lower.cols() || m_pattern_size != lower.nonZeros()) {
+        analyse(lower, group);
+    }
+    const SparseMatrix<double> matrix = ordered(lower);
+    if (!m_factor.factorise(matrix)) {
+        return false;
+    }
+    for (int s = 0; s < m_factor.n_supernodes(); ++s) {
+        const detail::Supernode node = m_factor.supernode(s);
+        for (int j = 0; j < node.width; ++j) {
+            const double pivot = node.values[j * static_cast<Index>(node.height) + j];
+            const double diagonal = matrix.valuePtr()[matrix.outerIndexPtr()[node.rows[j]]];
+            if (!(pivot * pivot > margin * diagonal)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+template <class Factor>
+template <int Columns>
+void BasicSparseCholesky<Factor>::substitute(Rows<Columns>& rows) const {
+    for (int s = 0; s < m_factor.n_supernodes(); ++s) {
+        eliminate<Columns>(m_factor.supernode(s), rows.data());
+    }
+    for (int s = m_factor.n_supernodes(); s-- > 0;) {
+        substitute_back<Columns>(m_factor.supernode(s), rows.data());
+    }
+}
+
+template <class Factor>
+template <class Visit>
+void BasicSparseCholesky<Factor>::for_columns(const Visit& visit) const {
+    for (int s = 0; s < m_factor.n_supernodes(); ++s) {
+        const detail::Supernode node = m_factor.supernode(s);
+        for (int j = 0; j < node.width; ++j) {
+            visit(node.rows[j], node.rows + j, node.values + j * static_cast<Index>(node.height) + j, node.height - j);
+        }
+    }
+}
+
+template <class Factor>
+template <int Columns>
+void BasicSparseCholesky<Factor>::eliminate(const detail::Supernode& node, double* data) {
+    const Index height = node.height;
+    const auto row = [data](Index r) { return Row<Columns>(data + r * Columns); };
+    for (int j = 0; j < node.width; ++j) {
+        const double* const column = node.values + j * height;
+        const Eigen::Array<double, Columns, 1> x = row(node.rows[j]) / column[j];
+        row(node.rows[j]) = x;
+        for (int i = j + 1; i < node.width; ++i) {
+            row(node.rows[i]) -= column[i] * x;
+        }
+    }
+    const auto below = [&]<int N>(std::integral_constant<int, N>, int first) {
+        Eigen::Array<double, Columns, N> sums = Eigen::Array<double, Columns, N>::Zero();
+        for (int j = 0; j < node.width; ++j) {
+            const double* const column = node.values + j * height + first;
+            const auto x = row(node.rows[j]);
+            for (int i = 0; i < N; ++i) {
+                sums.col(i) += column[i] * x;
+            }
+        }
+        for (int i = 0; i < N; ++i) {
+            row(node.rows[first + i]) -= sums.col(i);
+        }
+    };
+    in_tiles(node.width, node.height, below);
+}
+
+template <class Factor>
+template <int Columns>
+void BasicSparseCholesky<Factor>::substitute_back(const detail::Supernode& node, double* data) {
+    const Index height = node.height;
+    const auto row = [data](Index r) { return Row<Columns>(data + r * Columns); };
+    const auto gather = [&]<int N>(std::integral_constant<int, N>, int first) {
+        Eigen::Array<double, Columns, N> sums = Eigen::Array<double, Columns, N>::Zero();
+        const double* const columns = node.values + first * height;
+        for (int r = node.width; r < node.height; ++r) {
+            const auto x = row(node.rows[r]);
+            for (int i = 0; i < N; ++i) {
+                sums.col(i) += columns[i * height + r] * x;
+            }
+        }
+        for (int i = 0; i < N; ++i) {
+            row(node.rows[first + i]) -= sums.col(i);
+        }
+    };
+    in_tiles(0, node.width, gather);
+    for (int j = node.width; j-- > 0;) {
+        const double* const column = node.values + j * height;
+        Eigen::Array<double, Columns, 1> x = row(node.rows[j]);
+        for (int i = j + 1; i < node.width; ++i) {
+            x -= column[i] * row(node.rows[i]);
+        }
+        row(node.rows[j]) = x / column[j];
+    }
+}
+
+template <class Factor>
+template <class Body>
+void BasicSparseCholesky<Factor>::in_tiles(int begin, int end, const Body& body) {
+    for (; begin + tile <= end; begin += tile) {
+        body(std::integral_constant<int, tile>{}, begin);
+    }
+    for (; begin < end; ++begin) {
+        body(std::integral_constant<int, 1>{}, begin);
+    }
+}
+
+template <class Factor>
+auto BasicSparseCholesky<Factor>::graph_of(const SparseMatrix<double>& lower, int group) -> SparseMatrix<double> {
+    const Index n = lower.cols() / group;
+    std::vector<Eigen::Triplet<double>> entries;
+    for (Index c = 0; c < n; ++c) {
+        for (SparseMatrix<double>::InnerIterator entry(lower, group * c); entry; ++entry) {
+            if (entry.row() % group == 0) {
+                entries.emplace_back(static_cast<int>(entry.row() / group), static_cast<int>(c), 1.);
+            }
+        }
+    }
+    SparseMatrix<double> graph(n, n);
+    graph.setFromTriplets(entries.begin(), entries.end());
+    return graph;
+}
+
+template <class Factor>
+template <class Term>
+double BasicSparseCholesky<Factor>::sum_over_columns(const Term& term) const {
+    double sum = 0;
+    for (int s = 0; s < m_factor.n_supernodes(); ++s) {
+        const detail::Supernode node = m_factor.supernode(s);
+        for (int j = 0; j < node.width; ++j) {
+            sum += term(static_cast<double>(node.height - j));
+        }
+    }
+    return sum;
+}
+
+} // namespace springfit
