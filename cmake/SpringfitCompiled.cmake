@@ -47,8 +47,25 @@ function(springfit_add_compiled)
   endif()
 endfunction()
 
-# springfit::compiled_cgal: what CGAL does for springfit; its users need not see CGAL's headers.
+# springfit::compiled_cgal: what CGAL does for springfit; its users see neither CGAL's headers nor its -frounding-math.
+# Each unit takes at most 1.5 GB to compile: the mesher alone is two.
 function(springfit_add_compiled_cgal)
-  add_library(springfit_compiled_cgal STATIC "${PROJECT_BINARY_DIR}/compiled/stub.cpp")
+  set(sources)
+  foreach(header surface mesh_3 remove_slivers instances/tetrahedralize instances/triangulate instances/interpolation)
+    get_filename_component(name ${header} NAME)
+    set(source "${PROJECT_BINARY_DIR}/compiled_cgal/${name}.cpp")
+    file(CONFIGURE OUTPUT "${source}" CONTENT "#include <springfit/cgal/detail/${header}.hpp>\n")
+    list(APPEND sources "${source}")
+  endforeach()
+  add_library(springfit_compiled_cgal STATIC ${sources})
   target_link_libraries(springfit_compiled_cgal PUBLIC springfit::core PRIVATE springfit::cgal)
+  target_compile_definitions(springfit_compiled_cgal PUBLIC SPRINGFIT_COMPILED_CGAL)
+  target_compile_options(springfit_compiled_cgal PRIVATE
+                         -O1 # meshing takes as long as at -O3, compiling a third
+                         # GCC keeps 1 GB of what Boost's macros expand to, for its messages, and is slow to reuse memory.
+                         "$<$<CXX_COMPILER_ID:GNU>:-ftrack-macro-expansion=0;SHELL:--param ggc-min-expand=30>")
+  set_target_properties(springfit_compiled_cgal PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  if(SPRINGFIT_NATIVE) # its users too: Eigen aligns memory by the processor's vectors
+    target_compile_options(springfit_compiled_cgal PUBLIC -march=native)
+  endif()
 endfunction()

@@ -8,8 +8,8 @@
 
 #include "study.hpp"
 
-#ifdef SPRINGFIT_STUDY_CGAL
-#include <springfit/cgal/location.hpp>
+#ifdef SPRINGFIT_STUDY_COMPILED_CGAL
+#include <springfit/cgal/interpolation.hpp>
 #include <springfit/cgal/tetrahedralize.hpp>
 #include <springfit/cgal/triangulate.hpp>
 #endif
@@ -40,7 +40,7 @@ Mesh<3, double, Tet4> random_cut_box(const std::array<int, 3>& cells, const std:
     return {renumbered.nodes, network.cells};
 }
 
-#ifdef SPRINGFIT_STUDY_CGAL
+#ifdef SPRINGFIT_STUDY_COMPILED_CGAL
 
 Mesh<2, double, Tri3> rectangle_mesh(double length, double height, Index n_nodes) {
     cgal::Outline outline;
@@ -76,7 +76,7 @@ std::optional<Mesh<3, double, Tet4>> solid_mesh(const std::filesystem::path& pat
 
 std::optional<Interpolation<double>> interpolation_at(const Mesh<3, double, Tet4>& mesh,
                                                       const Points<3, double>& points) {
-    return cgal::interpolation<3, double, Tet4>(mesh, points);
+    return cgal::interpolation(mesh, points);
 }
 
 #else

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Everything that needs CGAL to read or make a mesh.
+// Reads or makes a mesh.
 
 #include <cstdio>
 
-#include <springfit/cgal/location.hpp>
+#include <springfit/cgal/interpolation.hpp>
 #include <springfit/cgal/tetrahedralize.hpp>
 #include <springfit/cgal/triangulate.hpp>
 #include <springfit/io/mesh_file.hpp>

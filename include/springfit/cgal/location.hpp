@@ -6,7 +6,6 @@
 #include <springfit/cgal/detail/cell_boxes.hpp>
 #include <springfit/cgal/detail/invert_cell.hpp>
 #include <springfit/mesh/topology.hpp>
-#include <springfit/motion/transfer.hpp>
 
 namespace springfit::cgal {
 
@@ -79,49 +78,7 @@ private:
     detail::SearchTree<Piece> m_surface;
 };
 
-/// Interpolation from the nodes of a mesh at points: by the shape functions of the cell that holds a point, and at the
-/// nearest surface point where none does.
-///
-/// Throws InvalidArgument for a point farther than `max_distance` (m; 0: a tenth of the mesh's diameter) from the mesh.
-/// O((cells + points) log cells).
-template <int Dim, std::floating_point Scalar, CellType Cell>
-[[nodiscard]] Interpolation<Scalar> interpolation(const Mesh<Dim, Scalar, Cell>& mesh,
-                                                  const Points<Dim, Scalar>& points, Scalar max_distance = 0) {
-    require(max_distance >= 0, "max_distance", "a length not below 0", max_distance);
-    const Locator locator(mesh);
-    const Scalar farthest = max_distance > 0 ? max_distance : locator.diameter() / 10;
-    std::vector<Eigen::Triplet<Scalar>> entries;
-    const auto add = [&](Index target, const auto& nodes, const auto& weights) {
-        const Scalar negligible = 10 * std::numeric_limits<Scalar>::epsilon();
-        Scalar kept = 0;
-        for (Index a = 0; a < weights.size(); ++a) {
-            kept += std::abs(weights(a)) > negligible ? weights(a) : Scalar(0);
-        }
-        for (Index a = 0; a < weights.size(); ++a) {
-            if (std::abs(weights(a)) > negligible) {
-                entries.emplace_back(nodes(a), static_cast<int>(target), weights(a) / kept);
-            }
-        }
-    };
-    for (Index target = 0; target < points.cols(); ++target) {
-        const Vector<Dim, Scalar> point = points.col(target);
-        if (const auto inside = locator.cell_at(point)) {
-            add(target, mesh.cells.col(inside->cell), inside->weights);
-        } else {
-            const auto place = locator.nearest(point);
-            if (!(place.distance <= farthest)) {
-                throw InvalidArgument("points", text("points at most ", farthest, " m from the mesh"),
-                                      text("point ", target, " at ", place.distance, " m"));
-            }
-            add(target, place.nodes, place.weights);
-        }
-    }
-    Interpolation<Scalar> result;
-    result.weights.resize(mesh.n_nodes(), points.cols());
-    result.weights.setFromTriplets(entries.begin(), entries.end());
-    return result;
-}
-
 } // namespace springfit::cgal
 
+#include <springfit/cgal/detail/interpolation.hpp>
 #include <springfit/cgal/detail/location.hpp>

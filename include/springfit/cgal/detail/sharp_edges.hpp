@@ -1,37 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <numeric>
+#include <algorithm>
+#include <cmath>
 
-#include <CGAL/Polygon_mesh_processing/detect_features.h>
-
-#include <springfit/cgal/detail/repair_surface.hpp>
+#include <springfit/cgal/detail/solid_mesher.hpp>
+#include <springfit/cgal/detail/solid_surface.hpp>
 
 namespace springfit::cgal::detail {
 
-/// A line of sharp edges that runs from corner to corner, or round to its first point.
-using SharpLine = std::vector<Kernel::Point_3>;
-
-/// The edges of a surface whose faces' normals differ by more than an angle, as a graph on its vertices.
+/// The sharp edges of a surface as a graph on its vertices.
 class SharpEdges {
 public:
     using Vertex = std::size_t;
 
-    SharpEdges(const TriangleSurface& surface, double angle)
-        : m_turn(std::cos(angle * CGAL_PI / 180)), m_points(surface.points().begin(), surface.points().end()),
-          m_neighbours(m_points.size()) {
-        std::vector<char> sharp(surface.number_of_edges(), 0);
-        CGAL::Polygon_mesh_processing::detect_sharp_edges(
-            surface, angle,
-            boost::make_function_property_map<TriangleSurface::Edge_index, char&>(
-                [&](TriangleSurface::Edge_index e) -> char& { return sharp[e]; }));
-        for (const auto edge : surface.edges()) {
-            if (sharp[edge]) {
-                const Vertex a = surface.vertex(edge, 0);
-                const Vertex b = surface.vertex(edge, 1);
-                m_neighbours[a].push_back(b);
-                m_neighbours[b].push_back(a);
-            }
+    /// `angle` (degrees): where a line turns by more, it ends.
+    SharpEdges(const SolidSurface& solid, double angle)
+        : m_turn(std::cos(angle * EIGEN_PI / 180)), m_points(solid.surface.nodes),
+          m_neighbours(static_cast<std::size_t>(solid.surface.n_nodes())) {
+        for (const auto& [a, b] : solid.sharp_edges) {
+            m_neighbours[static_cast<std::size_t>(a)].push_back(static_cast<Vertex>(b));
+            m_neighbours[static_cast<std::size_t>(b)].push_back(static_cast<Vertex>(a));
         }
     }
 
@@ -92,7 +81,8 @@ public:
                     const auto line = walk(v, m_neighbours[v][n], [&](Vertex w) { return is_end(w); });
                     SharpLine points;
                     for (std::size_t i = 0; i < line.size(); ++i) {
-                        points.push_back(m_points[line[i]]);
+                        const auto p = point(line[i]);
+                        points.push_back({p.x(), p.y(), p.z()});
                         if (i > 0) {
                             mark(line[i - 1], line[i]);
                             mark(line[i], line[i - 1]);
@@ -106,13 +96,15 @@ public:
     }
 
 private:
+    [[nodiscard]] Vector<3, double> point(Vertex v) const { return m_points.col(static_cast<Index>(v)); }
+
     [[nodiscard]] bool is_end(Vertex v) const {
         if (m_neighbours[v].size() != 2) {
             return true;
         }
-        const auto in = m_points[v] - m_points[m_neighbours[v][0]];
-        const auto out = m_points[m_neighbours[v][1]] - m_points[v];
-        return in * out < m_turn * std::sqrt(in.squared_length() * out.squared_length());
+        const Vector<3, double> in = point(v) - point(m_neighbours[v][0]);
+        const Vector<3, double> out = point(m_neighbours[v][1]) - point(v);
+        return in.dot(out) < m_turn * std::sqrt(in.squaredNorm() * out.squaredNorm());
     }
 
     /// Vertices from `start` by `next` on to the first where `ends` holds, or back to `start`.
@@ -129,7 +121,7 @@ private:
     [[nodiscard]] double length(const std::vector<Vertex>& line) const {
         double sum = 0;
         for (std::size_t i = 1; i < line.size(); ++i) {
-            sum += std::sqrt(CGAL::squared_distance(m_points[line[i - 1]], m_points[line[i]]));
+            sum += (point(line[i]) - point(line[i - 1])).norm();
         }
         return sum;
     }
@@ -142,7 +134,7 @@ private:
     }
 
     double m_turn;
-    std::vector<Kernel::Point_3> m_points;
+    Points<3, double> m_points;
     std::vector<std::vector<Vertex>> m_neighbours;
 };
 

@@ -1,8 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <map>
+
 #include <boost/geometry/algorithms/within.hpp>
 
+#include <springfit/cgal/detail/mesh_2.hpp>
+#include <springfit/cgal/detail/outline_file.hpp>
+#include <springfit/cgal/detail/pieces.hpp>
+#include <springfit/cgal/detail/size_search.hpp>
 #include <springfit/cgal/triangulate.hpp>
 
 namespace springfit::cgal {
@@ -64,7 +72,63 @@ template <std::floating_point Scalar>
 
 } // namespace detail
 
-inline Outline read_outline(const std::filesystem::path& path) {
+SPRINGFIT_CGAL_INLINE Outline checked(const Outline& outline, std::string_view name) {
+    require(outline.points.allFinite() && outline.holes.allFinite(), name, "finite coordinates",
+            "one that is not finite");
+    std::map<std::array<double, 2>, int> number;
+    std::vector<std::array<int, 2>> segments;
+    std::map<int, int> n_segments_at;
+    for (Index s = 0; s < outline.segments.cols(); ++s) {
+        std::array<int, 2> ends{};
+        for (const int e : {0, 1}) {
+            const int i = outline.segments(e, s);
+            if (!(i >= 0 && i < outline.points.cols())) {
+                throw InvalidArgument(name, text("point numbers in [0, ", outline.points.cols(), ")"),
+                                      text(i, " in segment ", s));
+            }
+            ends[static_cast<std::size_t>(e)] =
+                number.insert({{outline.points(0, i), outline.points(1, i)}, static_cast<int>(number.size())})
+                    .first->second;
+        }
+        if (ends[0] != ends[1]) {
+            segments.push_back(ends);
+        }
+    }
+    const NodePairs unique = springfit::detail::sorted_unique_pairs(segments);
+    require(unique.cols() >= 3, name, "an outline of at least three segments", unique.cols());
+
+    detail::PlaneGraph graph;
+    graph.points.resize(number.size());
+    Outline result;
+    result.points.resize(2, static_cast<Index>(number.size()));
+    for (const auto& [point, i] : number) {
+        graph.points[static_cast<std::size_t>(i)] = {point[0], point[1]};
+        result.points.col(i) << point[0], point[1];
+    }
+    for (Index s = 0; s < unique.cols(); ++s) {
+        graph.segments.push_back({unique(0, s), unique(1, s)});
+        ++n_segments_at[unique(0, s)];
+        ++n_segments_at[unique(1, s)];
+    }
+    const auto loose =
+        std::count_if(n_segments_at.begin(), n_segments_at.end(), [](const auto& at) { return at.second == 1; });
+    if (loose > 0) {
+        const int first = std::find_if(n_segments_at.begin(), n_segments_at.end(), [](const auto& at) {
+                              return at.second == 1;
+                          })->first;
+        throw InvalidArgument(name, "a closed outline",
+                              text("an open one: ", loose, loose == 1 ? " loose end" : " loose ends",
+                                   ", the first at (", result.points.col(first).transpose(), ")"));
+    }
+    const Index crossings = detail::count_crossings(graph);
+    require(crossings == 0, name, "segments that meet at their ends only",
+            text(crossings, crossings == 1 ? " pair" : " pairs", " that cross, touch or overlap"));
+    result.segments = unique;
+    result.holes = outline.holes;
+    return result;
+}
+
+SPRINGFIT_CGAL_INLINE Outline read_outline(const std::filesystem::path& path) {
     const std::string name = path.string();
     const std::string extension = detail::lower_extension(path);
     if (extension != ".poly" && extension != ".wkt") {

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include <CGAL/Mesh_complex_3_in_triangulation_3.h>
+#include <CGAL/Mesh_domain_with_polyline_features_3.h>
+#include <CGAL/Mesh_polyhedron_3.h>
+#include <CGAL/Mesh_triangulation_3.h>
+#include <CGAL/Polyhedral_mesh_domain_3.h>
+#include <CGAL/exceptions.h>
+
+#include <springfit/cgal/detail/kernel.hpp>
+#include <springfit/cgal/detail/solid_mesher.hpp>
+
+namespace springfit::cgal::detail {
+
+using SolidPolyhedron = CGAL::Mesh_polyhedron_3<Kernel>::type;
+/// (CGAL's own domain with features is this one and finds the sharp edges itself, which takes all of its polygon mesh
+/// processing to compile.)
+using SolidDomain = CGAL::Mesh_domain_with_polyline_features_3<
+    CGAL::Polyhedral_mesh_domain_3<SolidPolyhedron, Kernel, CGAL::Default, int>>;
+using SolidTriangulation = CGAL::Mesh_triangulation_3<SolidDomain, CGAL::Default, CGAL::Sequential_tag>::type;
+
+struct SolidComplex {
+    using Complex = CGAL::Mesh_complex_3_in_triangulation_3<SolidTriangulation, SolidDomain::Corner_index,
+                                                            SolidDomain::Curve_index>;
+    Complex complex;
+};
+
+struct SolidMesher::State {
+    void prepare(const std::vector<SharpLine>& wanted);
+
+    unsigned seed = 0;
+    CGAL::Random random{0};
+    SolidPolyhedron polyhedron;
+    std::vector<int> patches;          ///< numbers of the pieces of the surface, each once
+    std::optional<SolidDomain> domain; ///< of the lines
+    std::vector<SharpLine> lines;
+};
+
+/// Calls `meshing`, whose failures in CGAL become MesherFailure.
+template <class Meshing>
+void without_failure(const Meshing& meshing) {
+    try {
+        meshing();
+    } catch (const CGAL::Failure_exception& failure) {
+        throw MesherFailure(failure.message());
+    }
+}
+
+} // namespace springfit::cgal::detail
