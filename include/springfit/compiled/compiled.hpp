@@ -4,15 +4,16 @@
 /// All of core, and which of its templates `springfit::compiled` holds: with that library linked, include this in the
 /// place of `<springfit/springfit.hpp>` (or as well), and they are not compiled again.
 ///
-/// In the plane and in space, in double and float; for the FEM, each plane and solid element with each material, in
-/// double. Everything else is instantiated where it is used, as without it. The lists, one file per part, say `extern
-/// template` here and `template` in the library's own units.
+/// In the plane and in space, in double and float; each plane and solid element with each material, and the closed
+/// forms, in double. Everything else is instantiated where it is used, as without it. The lists, one file per part, say
+/// `extern template` here and `template` in the library's own units.
 
 #include <springfit/springfit.hpp>
 
 #define SPRINGFIT_INSTANTIATION extern template
 
-#include <springfit/compiled/closed_form.ipp>
+#include <springfit/compiled/closed_form_boxes.ipp>
+#include <springfit/compiled/closed_form_simplices.ipp>
 #include <springfit/compiled/fem_hex8.ipp>
 #include <springfit/compiled/fem_quad4.ipp>
 #include <springfit/compiled/fem_solvers.ipp>
@@ -24,7 +25,9 @@
 #include <springfit/compiled/fit_trajectory_2d.ipp>
 #include <springfit/compiled/fit_trajectory_3d.ipp>
 #include <springfit/compiled/network.ipp>
-#include <springfit/compiled/score.ipp>
+#include <springfit/compiled/score_2d.ipp>
+#include <springfit/compiled/score_3d.ipp>
 #include <springfit/compiled/solve.ipp>
 #include <springfit/compiled/step_bodies.ipp>
-#include <springfit/compiled/step_steppers.ipp>
+#include <springfit/compiled/step_steppers_2d.ipp>
+#include <springfit/compiled/step_steppers_3d.ipp>

@@ -3,31 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
+#include <springfit/io/detail/read_text.hpp>
 #include <springfit/io/json.hpp>
 
 namespace springfit::io {
 
 namespace detail {
-
-/// The whole of a file. Throws FileError where it is missing, a folder, or cannot be read.
-[[nodiscard]] inline std::string read_text(const std::filesystem::path& path) {
-    std::error_code error;
-    if (!std::filesystem::exists(path, error)) {
-        throw FileError(path.string(), "no such file");
-    }
-    if (std::filesystem::is_directory(path, error)) {
-        throw FileError(path.string(), "is a folder, not a file");
-    }
-    std::ifstream stream(path, std::ios::binary);
-    std::string content{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-    if (!stream) {
-        throw FileError(path.string(), text("cannot be read: ", reason(errno)));
-    }
-    return content;
-}
 
 [[nodiscard]] inline bool goes_on_one_line(const Json& value) {
     if (value.is_array()) {

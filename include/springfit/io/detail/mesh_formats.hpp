@@ -3,8 +3,8 @@
 
 #include <cctype>
 
-#include <springfit/io/detail/json.hpp>
 #include <springfit/io/detail/mesh_collector.hpp>
+#include <springfit/io/detail/read_text.hpp>
 
 namespace springfit::io::detail {
 

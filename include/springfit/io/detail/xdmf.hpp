@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <charconv>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -10,7 +11,7 @@
 #include <vector>
 
 #include <springfit/io/cell_kind.hpp>
-#include <springfit/io/detail/json.hpp>
+#include <springfit/io/detail/read_text.hpp>
 
 namespace springfit::io::detail {
 
@@ -75,6 +76,12 @@ struct XdmfMotion {
     std::vector<std::string> vectors; ///< datasets [T x n x Dim], "/reference/displacement"
 };
 
+/// The shortest text that reads back as the same double.
+[[nodiscard]] inline std::string shortest(double value) {
+    std::array<char, 32> digits{};
+    return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
+}
+
 /// Two animations over the same nodes at rest, the mesh and the springs, with one set of vectors per frame.
 [[nodiscard]] inline std::string xdmf_text(const XdmfMotion& motion) {
     const std::string h5 = xml_escaped(motion.h5_name);
@@ -92,8 +99,8 @@ struct XdmfMotion {
     const auto append_grid = [&](std::string_view name, const std::string& topology) {
         result += text("<Grid Name=\"", name, "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
         for (std::size_t t = 0; t < motion.times.size(); ++t) {
-            result += text("<Grid Name=\"", name, "\" GridType=\"Uniform\">\n<Time Value=\"",
-                           Json(motion.times[t]).dump(), "\"/>\n", topology, geometry);
+            result += text("<Grid Name=\"", name, "\" GridType=\"Uniform\">\n<Time Value=\"", shortest(motion.times[t]),
+                           "\"/>\n", topology, geometry);
             for (const std::string& dataset : motion.vectors) {
                 result +=
                     text("<Attribute Name=\"", attribute_name(dataset), "\" AttributeType=\"Vector\" Center=\"Node\">",
