@@ -40,6 +40,7 @@ function(springfit_add_compiled_cgal)
   target_compile_definitions(springfit_compiled_cgal PUBLIC SPRINGFIT_COMPILED_CGAL)
   target_compile_options(springfit_compiled_cgal PRIVATE
                          -O1 # meshing takes as long as at -O3, compiling a third
+                         -ffp-contract=off # the same meshes on every processor
                          # GCC keeps 1 GB of what Boost's macros expand to, for its messages, and is slow to reuse memory.
                          "$<$<CXX_COMPILER_ID:GNU>:-ftrack-macro-expansion=0;SHELL:--param ggc-min-expand=30>")
   set_target_properties(springfit_compiled_cgal PROPERTIES POSITION_INDEPENDENT_CODE ON)
