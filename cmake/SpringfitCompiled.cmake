@@ -58,10 +58,15 @@ function(springfit_add_compiled_cgal)
     list(APPEND sources "${source}")
   endforeach()
   add_library(springfit_compiled_cgal STATIC ${sources})
-  target_link_libraries(springfit_compiled_cgal PUBLIC springfit::core PRIVATE springfit::cgal)
+  # (CGAL itself, not springfit::cgal: the installed library then asks for no other component.)
+  target_link_libraries(springfit_compiled_cgal PUBLIC springfit::core PRIVATE CGAL::CGAL)
+  set(include "${PROJECT_SOURCE_DIR}/include")
+  list(TRANSFORM SPRINGFIT_compiled_cgal_HEADERS PREPEND "${include}/springfit/cgal/" OUTPUT_VARIABLE headers)
+  target_sources(springfit_compiled_cgal PUBLIC FILE_SET HEADERS BASE_DIRS "${include}" FILES ${headers})
   target_compile_definitions(springfit_compiled_cgal PUBLIC SPRINGFIT_COMPILED_CGAL)
   target_compile_options(springfit_compiled_cgal PRIVATE
                          -O1 # meshing takes as long as at -O3, compiling a third
+                         -ffp-contract=off # the same meshes on every processor
                          # GCC keeps 1 GB of what Boost's macros expand to, for its messages, and is slow to reuse memory.
                          "$<$<CXX_COMPILER_ID:GNU>:-ftrack-macro-expansion=0;SHELL:--param ggc-min-expand=30>")
   set_target_properties(springfit_compiled_cgal PROPERTIES POSITION_INDEPENDENT_CODE ON)

@@ -21,6 +21,7 @@ set(SPRINGFIT_search_LINKS springfit::core Pagmo::pagmo)
 # What is compiled once, beside the headers: static libraries of cmake/SpringfitCompiled.cmake.
 set(SPRINGFIT_compiled_ROOMS compiled)
 set(SPRINGFIT_compiled_cgal_ROOMS)
+set(SPRINGFIT_compiled_cgal_HEADERS interpolation.hpp surface.hpp tetrahedralize.hpp triangulate.hpp detail/inline.hpp)
 
 # springfit_find_component(<name>): sets springfit_<name>_FOUND, and springfit_<name>_REASON where it is FALSE.
 macro(springfit_find_component component)

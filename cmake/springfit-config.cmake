@@ -1,4 +1,4 @@
-# find_package(springfit [COMPONENTS core cgal cholmod ipopt io parallel search] [OPTIONAL_COMPONENTS ...])
+# find_package(springfit [COMPONENTS core cgal cholmod compiled compiled_cgal ipopt io parallel search] [OPTIONAL_COMPONENTS ...])
 # Without COMPONENTS: core. Each component is one target, springfit::<component>; core is always there.
 
 include("${CMAKE_CURRENT_LIST_DIR}/SpringfitComponents.cmake")

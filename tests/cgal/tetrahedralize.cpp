@@ -3,6 +3,8 @@
 
 #include "shapes.hpp"
 
+#include <springfit/cgal/detail/clean_solid.hpp>
+#include <springfit/cgal/detail/sharp_edges.hpp>
 #include <springfit/cgal/tetrahedralize.hpp>
 
 using namespace springfit;
@@ -98,10 +100,12 @@ TEST_CASE("the same input gives the same mesh") {
 }
 
 TEST_CASE("sharp edges are kept by their angle, short ones dropped as noise") {
-    cgal::detail::SharpEdges edges(cgal::detail::repaired(cgal::detail::to_soup(test::l_shape()), 0), 60);
+    const auto edges_above = [](double angle) {
+        return cgal::detail::SharpEdges(cgal::detail::solid_surface(test::l_shape(), {}, angle, "l"), angle);
+    };
+    auto edges = edges_above(60);
     CHECK(edges.lines().size() == 18);
-    cgal::detail::SharpEdges smooth(cgal::detail::repaired(cgal::detail::to_soup(test::l_shape()), 0), 100);
-    CHECK(smooth.lines().empty());
+    CHECK(edges_above(100).lines().empty());
     edges.drop_short(0.5, 21.9); // the outline is 8 long, twice, and 6 edges stand upright: 22 in all
     CHECK(edges.lines().size() == 18);
     edges.drop_short(0.5, 22.1);

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#ifndef SPRINGFIT_COMPILED_CGAL // first: CGAL's mesher gives other meshes after CGAL's polygon mesh processing
+#include <springfit/cgal/detail/mesh_3.hpp>
+#include <springfit/cgal/detail/remove_slivers.hpp>
+#endif
+
 #include <springfit/cgal/surface.hpp>
 #include <springfit/core/progress.hpp>
 

@@ -8,11 +8,6 @@
 #include <springfit/cgal/detail/solid_surface.hpp>
 #include <springfit/cgal/tetrahedralize.hpp>
 
-#ifndef SPRINGFIT_COMPILED_CGAL
-#include <springfit/cgal/detail/mesh_3.hpp>
-#include <springfit/cgal/detail/remove_slivers.hpp>
-#endif
-
 namespace springfit::cgal {
 
 namespace detail {
