@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every fit, in the plane and in space: what a user's unit instantiates of vector types.
+// The fits, in the plane and in space: what a user's unit instantiates of vector types.
 #include <springfit/springfit.hpp>
 
 namespace {
@@ -26,7 +26,11 @@ bool fit(const Mesh<Dim, Scalar, Cell>& mesh) {
 
 } // namespace
 
+// CONSUMER_IN_PLANE leaves space out, which takes long to compile.
 int main() {
-    return fit(triangle_grid<double>({2, 2}, {1., 1.})) && fit(tetrahedron_grid<double>({2, 2, 2}, {1., 1., 1.})) ? 0
-                                                                                                                  : 1;
+    bool fitted = fit(triangle_grid<double>({2, 2}, {1., 1.}));
+#ifndef CONSUMER_IN_PLANE
+    fitted = fitted && fit(tetrahedron_grid<double>({2, 2, 2}, {1., 1., 1.}));
+#endif
+    return fitted ? 0 : 1;
 }

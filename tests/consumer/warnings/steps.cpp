@@ -35,10 +35,14 @@ double move_all(const Mesh<Dim, Scalar, Cell>& mesh) {
 
 } // namespace
 
+// CONSUMER_IN_DOUBLE and CONSUMER_IN_SPACE leave out kinds, since each takes long to compile.
 int main() {
-    const double moved = move_all(triangle_grid<float>({2, 2}, {1.f, 1.f})) +
-                         move_all(triangle_grid<double>({2, 2}, {1., 1.})) +
-                         move_all(tetrahedron_grid<float>({2, 2, 2}, {1.f, 1.f, 1.f})) +
-                         move_all(tetrahedron_grid<double>({2, 2, 2}, {1., 1., 1.}));
+    double moved = move_all(tetrahedron_grid<double>({2, 2, 2}, {1., 1., 1.}));
+#ifndef CONSUMER_IN_SPACE
+    moved += move_all(triangle_grid<double>({2, 2}, {1., 1.}));
+#endif
+#ifndef CONSUMER_IN_DOUBLE
+    moved += move_all(tetrahedron_grid<float>({2, 2, 2}, {1.f, 1.f, 1.f}));
+#endif
     return moved > 0 ? 0 : 1;
 }
