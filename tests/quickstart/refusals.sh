@@ -63,8 +63,9 @@ END
 stub apt-get <<'END'
 echo "apt-get $*" >>"$LOG"
 END
-check "no root" 2 "^quickstart: installing .* needs root, and there is no sudo"
-grep -q libcgal-dev "$work/out" || fail "no root: does not name the packages"
+check "no root" 2 "^quickstart: installing packages needs root, and there is no sudo"
+grep -q 'as root, run: apt-get update && apt-get install .* libcgal-dev' "$work/out" || fail "no root: does not say what to run"
+[ "$(grep -c . "$work/out")" -eq 1 ] || fail "no root: more than one line"
 [ ! -s "$work/log" ] || fail "no root: ran $(cat "$work/log")"
 
 # With sudo, everything that needs root goes through it.
