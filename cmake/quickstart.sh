@@ -35,17 +35,19 @@ usage() {
     exit 2
 }
 
-# as_root <what for> <command...>
+# need_root <what> <commands>: ends where what needs root cannot be done, with the commands that do it.
+need_root() {
+    if [ "$(id -u)" -ne 0 ] && ! command -v sudo >/dev/null; then
+        echo "quickstart: $1 needs root, and there is no sudo; as root, run: $2" >&2
+        exit 2
+    fi
+}
+
 as_root() {
-    purpose="$1"
-    shift
     if [ "$(id -u)" -eq 0 ]; then
         "$@"
-    elif command -v sudo >/dev/null; then
-        sudo "$@"
     else
-        echo "quickstart: $purpose needs root, and there is no sudo; as root, run: $*" >&2
-        exit 2
+        sudo "$@"
     fi
 }
 
@@ -60,9 +62,10 @@ install_missing() {
         dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing="$missing $package"
     done
     [ -n "$missing" ] || return 0
+    need_root "installing packages" "apt-get update && apt-get install -y --no-install-recommends$missing"
     echo "installing:$missing"
-    as_root "installing$missing" apt-get update -qq
-    as_root "installing$missing" env DEBIAN_FRONTEND=noninteractive \
+    as_root apt-get update -qq
+    as_root env DEBIAN_FRONTEND=noninteractive \
         apt-get install -y -qq --no-install-recommends $missing >/dev/null
 }
 
@@ -79,7 +82,8 @@ fetch_surfaces() {
         cd build/data
         rm -rf package libcgal-demo_*.deb
         if ! apt-get download -qq libcgal-demo 2>/dev/null; then # no package lists, or old ones
-            as_root "fetching the package libcgal-demo" apt-get update -qq
+            need_root "reading the lists of packages" "apt-get update"
+            as_root apt-get update -qq
             apt-get download -qq libcgal-demo
         fi
         dpkg-deb -x libcgal-demo_*.deb package

@@ -58,14 +58,15 @@ private:
     /// H_i x_i of some terms. What they need of x is gathered for a few of them before they are multiplied: a vector
     /// load right after the scalar stores that it reads would wait for them.
     void multiply(const Unknowns& x, Index begin, Index end) {
-        Unknowns gathered;
+        const auto place_of = [this](Index term) { return m_begin[static_cast<std::size_t>(term)]; };
+        Index most = 0;
+        for (Index first = begin; first < end; first += terms_at_once) {
+            most = std::max(most, place_of(std::min(end, first + terms_at_once)) - place_of(first));
+        }
+        Unknowns gathered(most);
         for (Index first = begin; first < end; first += terms_at_once) {
             const Index last = std::min(end, first + terms_at_once);
-            const Index offset = m_begin[static_cast<std::size_t>(first)];
-            const Index size = m_begin[static_cast<std::size_t>(last)] - offset;
-            if (gathered.size() < size) {
-                gathered.resize(size);
-            }
+            const Index offset = place_of(first);
             double* to = gathered.data();
             for (Index i = first; i < last; ++i) {
                 const auto columns = m_objective.term(i).columns;
@@ -78,7 +79,7 @@ private:
             }
             for (Index i = first; i < last; ++i) {
                 const auto term = m_objective.term(i);
-                const Index place = m_begin[static_cast<std::size_t>(i)];
+                const Index place = place_of(i);
                 packed_product(term.hessian, term.size(), gathered.data() + (place - offset), m_image.data() + place);
             }
         }

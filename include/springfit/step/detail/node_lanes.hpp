@@ -5,7 +5,8 @@
 #include <cstddef>
 
 /// Vectors of a few numbers that one instruction works on, by the vector types that GCC and Clang share: the compiler
-/// makes AVX, SSE or scalar instructions of them, whatever it is told that the machine has.
+/// makes AVX, SSE or scalar instructions of them, whatever it is told that the machine has. They go in and out of
+/// functions by reference: how they go by value differs between machines, of which GCC warns (-Wpsabi).
 namespace springfit::detail {
 
 template <std::floating_point Scalar, int Size>
@@ -70,10 +71,13 @@ struct NodeLanes<3, Scalar> {
 
     /// The volume that three edges from one corner span, 3! V, and its gradient by the end of each.
     static Scalar volume(const Force* edges, Force* gradients) {
-        const Force turned[3] = {turn(edges[0]), turn(edges[1]), turn(edges[2])};
+        Force turned[3];
+        for (int a = 0; a < 3; ++a) {
+            turn(edges[a], turned[a]);
+        }
         for (int a = 0; a < 3; ++a) {
             const int b = (a + 1) % 3, c = (a + 2) % 3;
-            gradients[a] = turn(edges[b] * turned[c] - turned[b] * edges[c]);
+            turn(edges[b] * turned[c] - turned[b] * edges[c], gradients[a]);
         }
         const Force products = edges[0] * gradients[0];
         return products[0] + products[1] + products[2];
@@ -81,7 +85,7 @@ struct NodeLanes<3, Scalar> {
 
 private:
     /// (y z x -)
-    static Force turn(const Force& r) { return __builtin_shufflevector(r, r, 1, 2, 0, 3); }
+    static void turn(const Force& r, Force& turned) { turned = __builtin_shufflevector(r, r, 1, 2, 0, 3); }
 
     /// Half of the sums of two differences: (r_1 r_1, .) in pairs of lanes.
     static void add_products(const Record& a, const Record& b, Record& sums) {

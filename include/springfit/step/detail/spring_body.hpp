@@ -213,15 +213,14 @@ template <int Dim, std::floating_point ScalarType>
 void SpringBody<Dim, ScalarType>::add_cell_forces(const typename Packed::Domain& domain) {
     using Lane = typename Lanes::Force;
     for (const Cell& cell : domain.cells) {
-        const auto position = [&](int corner) {
-            Lane result;
-            Lanes::vector(m_nodes[static_cast<std::size_t>(cell.corners[corner])].lanes, result);
-            return result;
+        const auto find = [&](int corner, Lane& position) {
+            Lanes::vector(m_nodes[static_cast<std::size_t>(cell.corners[corner])].lanes, position);
         };
-        const Lane origin = position(0);
-        Lane edges[Dim], gradients[Dim];
+        Lane origin, edges[Dim], gradients[Dim];
+        find(0, origin);
         for (int a = 0; a < Dim; ++a) {
-            edges[a] = position(a + 1) - origin;
+            find(a + 1, edges[a]);
+            edges[a] -= origin;
         }
         const Scalar volume = Cell::share * Lanes::volume(edges, gradients);
         const Scalar pressure = Cell::share * cell.stiffness * (1 - volume * cell.inverse_volume);

@@ -1,0 +1,46 @@
+# cmake -P, with WAY, SPRINGFIT, PROJECT, WORK, GENERATOR, COMPILER: a project that holds springfit builds and runs; it looks for
+# core's Eigen alone; and it installs nothing of springfit but where it asks to.
+file(REMOVE_RECURSE "${WORK}")
+
+function(run output)
+  execute_process(COMMAND ${ARGN} OUTPUT_VARIABLE out ERROR_VARIABLE out RESULT_VARIABLE failed)
+  if(failed)
+    message(FATAL_ERROR "${ARGN}\n${out}")
+  endif()
+  set(${output} "${out}" PARENT_SCOPE)
+endfunction()
+
+run(log "${CMAKE_COMMAND}" -S "${PROJECT}" -B "${WORK}/build" -G "${GENERATOR}" "-DCMAKE_CXX_COMPILER=${COMPILER}"
+    "-DCONSUMER_SPRINGFIT=${SPRINGFIT}" "-DCONSUMER_WAY=${WAY}")
+if(NOT log MATCHES "springfit::core: available")
+  message(FATAL_ERROR "core was not provided:\n${log}")
+endif()
+string(REGEX MATCHALL "springfit::[a-z_]+" named "${log}")
+list(REMOVE_ITEM named springfit::core)
+if(named OR log MATCHES "Warning")
+  message(FATAL_ERROR "configuring names components that nobody asked for, or warns:\n${log}")
+endif()
+file(STRINGS "${WORK}/build/CMakeCache.txt" looked_for REGEX "^(TBB|CGAL|nlohmann_json|pagmo|doctest|CLI11|benchmark)_DIR|^(PKG_CONFIG_EXECUTABLE|SPRINGFIT_CHOLMOD_LIBRARY)")
+if(looked_for)
+  message(FATAL_ERROR "configuring looked for what core does not need: ${looked_for}")
+endif()
+
+run(log "${CMAKE_COMMAND}" --build "${WORK}/build")
+if(log MATCHES "[Ww]arning")
+  message(FATAL_ERROR "building warns:\n${log}")
+endif()
+
+run(log "${CMAKE_COMMAND}" --install "${WORK}/build" --prefix "${WORK}/prefix")
+file(GLOB_RECURSE installed RELATIVE "${WORK}/prefix" "${WORK}/prefix/*")
+if(NOT installed STREQUAL "bin/consumer")
+  message(FATAL_ERROR "the project installs ${installed} instead of bin/consumer alone")
+endif()
+run(log "${WORK}/prefix/bin/consumer")
+
+run(log "${CMAKE_COMMAND}" -DSPRINGFIT_INSTALL=ON "${WORK}/build")
+run(log "${CMAKE_COMMAND}" --install "${WORK}/build" --prefix "${WORK}/prefix_with_springfit")
+foreach(file bin/consumer include/springfit/springfit.hpp share/cmake/springfit/springfit-config.cmake)
+  if(NOT EXISTS "${WORK}/prefix_with_springfit/${file}")
+    message(FATAL_ERROR "with SPRINGFIT_INSTALL=ON, ${file} is not installed")
+  endif()
+endforeach()
