@@ -18,9 +18,15 @@ function(springfit_compiled_sources variable)
   set(${variable} ${sources} PARENT_SCOPE)
 endfunction()
 
-# springfit_add_instantiations(<target>): a static library of the instantiations that include/springfit/compiled lists.
+# springfit_add_instantiations(<target> [FLOAT]): a static library of the instantiations in double, or float, that
+# include/springfit/compiled lists.
 function(springfit_add_instantiations target)
   file(GLOB lists CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/include/springfit/compiled/*.ipp")
+  if("FLOAT" IN_LIST ARGN)
+    list(FILTER lists INCLUDE REGEX "_float\\.ipp$")
+  else()
+    list(FILTER lists EXCLUDE REGEX "_float\\.ipp$")
+  endif()
   set(names)
   foreach(list IN LISTS lists)
     get_filename_component(name "${list}" NAME_WE)
@@ -29,21 +35,29 @@ function(springfit_add_instantiations target)
   springfit_compiled_sources(sources ${names})
   add_library(${target} STATIC ${sources})
   target_link_libraries(${target} PUBLIC springfit::core)
-  target_precompile_headers(${target} PRIVATE <springfit/springfit.hpp>)
 endfunction()
 
-# springfit::compiled: core's templates in the plane and in space, in double and float. Its factors are CHOLMOD's where
-# that component is there, and then so are those of all that link it.
+# springfit::compiled: core's templates in the plane and in space, in double and float (two libraries, since most programs
+# need one). Its factors are CHOLMOD's where that component is there, and then so are those of all that link it.
 function(springfit_add_compiled)
-  springfit_add_instantiations(springfit_compiled)
-  file(GLOB lists CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/include/springfit/compiled/*.ipp")
-  target_sources(springfit_compiled PUBLIC FILE_SET HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}/include"
-                 FILES ${lists} "${PROJECT_SOURCE_DIR}/include/springfit/compiled/compiled.hpp")
+  springfit_add_instantiations(springfit_compiled_double)
+  springfit_add_instantiations(springfit_compiled_float FLOAT)
+  target_link_libraries(springfit_compiled_float PUBLIC springfit_compiled_double)
   if(TARGET springfit::cholmod)
-    target_link_libraries(springfit_compiled PUBLIC springfit::cholmod)
+    target_link_libraries(springfit_compiled_double PUBLIC springfit::cholmod)
   endif()
   if(SPRINGFIT_NATIVE) # vectors and their alignment are of one kind in all of a program
-    target_compile_options(springfit_compiled PUBLIC -march=native)
+    target_compile_options(springfit_compiled_double PUBLIC -march=native)
+  endif()
+  target_precompile_headers(springfit_compiled_double PRIVATE <springfit/compiled/compiled.hpp>)
+  target_precompile_headers(springfit_compiled_float REUSE_FROM springfit_compiled_double)
+  file(GLOB lists CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/include/springfit/compiled/*.ipp")
+  add_library(springfit_compiled INTERFACE)
+  target_sources(springfit_compiled INTERFACE FILE_SET HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}/include"
+                 FILES ${lists} "${PROJECT_SOURCE_DIR}/include/springfit/compiled/compiled.hpp")
+  target_link_libraries(springfit_compiled INTERFACE springfit_compiled_float springfit_compiled_double)
+  if(SPRINGFIT_INSTALL)
+    install(TARGETS springfit_compiled_double springfit_compiled_float EXPORT springfit-compiled)
   endif()
 endfunction()
 

@@ -4,7 +4,7 @@
 #include <functional>
 
 #include <springfit/core/execution.hpp>
-#include <springfit/io/report_json.hpp>
+#include <springfit/io/json_value.hpp>
 #include <springfit/motion/motion.hpp>
 
 #include "reference.hpp"

@@ -38,24 +38,26 @@ template <int Dim, std::floating_point Scalar, CellType Cell>
     const Values<double> lower = Values<double>::Zero(n_pairs);
     const Values<double> upper = Values<double>::Constant(n_pairs, std::numeric_limits<double>::infinity());
     for (Index c = 0; c < corners.n_cells(); ++c) {
-        const auto element = detail::element_stiffness(corners, c, constants);
+        // Sizes at run time, so that all cells share one instantiation of products and solver.
+        const DenseMatrix<double> element = detail::element_stiffness(corners, c, constants);
         const auto x = corners.cell_nodes(c).template cast<double>().eval();
-        Eigen::Matrix<double, Dim * Cell::n_corners, n_pairs> b;
-        b.setZero();
+        DenseMatrix<double> b = DenseMatrix<double>::Zero(Dim * Cell::n_corners, n_pairs);
         for (int p = 0; p < n_pairs; ++p) {
             const auto [i, j] = pair_of(p);
             const Vector<Dim, double> n = (x.col(j) - x.col(i)).normalized();
-            b.template block<Dim, 1>(Dim * i, p) = -n;
-            b.template block<Dim, 1>(Dim * j, p) = n;
+            b.col(p).template segment<Dim>(Dim * i) = -n;
+            b.col(p).template segment<Dim>(Dim * j) = n;
         }
         // The square of the distance is k'Hk - 2 g'k + |K|^2.
-        const Eigen::Matrix<double, n_pairs, n_pairs> hessian = (b.transpose() * b).cwiseAbs2();
-        const Vector<n_pairs, double> linear = (b.transpose() * element * b).diagonal();
+        const DenseMatrix<double> products = b.transpose() * b;
+        const DenseMatrix<double> hessian = products.cwiseAbs2();
+        const DenseMatrix<double> images = element * b;
+        const Values<double> linear = b.cwiseProduct(images).colwise().sum().transpose();
         const double scale = linear.maxCoeff(); // the solver's tolerance is relative to it
         Values<double> k = lower;
         (void)least_squares.solve(hessian, Values<double>(linear / scale), lower, upper, k);
         k *= scale;
-        const double missed2 = element.squaredNorm() + k.dot(hessian * k - 2 * linear);
+        const double missed2 = element.squaredNorm() + k.dot(hessian * k) - 2 * k.dot(linear);
         most_missed = std::max(most_missed, std::sqrt(std::max(missed2, 0.) / element.squaredNorm()));
         for (int p = 0; p < n_pairs; ++p) {
             const auto [i, j] = pair_of(p);

@@ -12,22 +12,19 @@
 
 #define SPRINGFIT_INSTANTIATION extern template
 
-#include <springfit/compiled/closed_form_boxes.ipp>
-#include <springfit/compiled/closed_form_simplices.ipp>
-#include <springfit/compiled/fem_hex8.ipp>
-#include <springfit/compiled/fem_quad4.ipp>
+#include <springfit/compiled/closed_form.ipp>
+#include <springfit/compiled/fem_plane.ipp>
+#include <springfit/compiled/fem_solid.ipp>
 #include <springfit/compiled/fem_solvers.ipp>
-#include <springfit/compiled/fem_tet10.ipp>
-#include <springfit/compiled/fem_tet4.ipp>
-#include <springfit/compiled/fem_tri3.ipp>
-#include <springfit/compiled/fem_tri6.ipp>
 #include <springfit/compiled/fit_acceleration.ipp>
+#include <springfit/compiled/fit_float.ipp>
 #include <springfit/compiled/fit_trajectory_2d.ipp>
 #include <springfit/compiled/fit_trajectory_3d.ipp>
+#include <springfit/compiled/motion.ipp>
 #include <springfit/compiled/network.ipp>
-#include <springfit/compiled/score_2d.ipp>
-#include <springfit/compiled/score_3d.ipp>
+#include <springfit/compiled/score.ipp>
 #include <springfit/compiled/solve.ipp>
+#include <springfit/compiled/solve_float.ipp>
 #include <springfit/compiled/step_bodies.ipp>
-#include <springfit/compiled/step_steppers_2d.ipp>
-#include <springfit/compiled/step_steppers_3d.ipp>
+#include <springfit/compiled/step_float.ipp>
+#include <springfit/compiled/step_steppers.ipp>

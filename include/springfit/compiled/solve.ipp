@@ -4,7 +4,6 @@
 namespace springfit {
 
 SPRINGFIT_INSTANTIATION class SymmetricMatrix<double>;
-SPRINGFIT_INSTANTIATION class SymmetricMatrix<float>;
 SPRINGFIT_INSTANTIATION class BasicSparseCholesky<detail::SparseFactor>;
 SPRINGFIT_INSTANTIATION void SparseCholesky::substitute<1>(Rows<1>&) const;
 SPRINGFIT_INSTANTIATION void SparseCholesky::substitute<4>(Rows<4>&) const;
@@ -13,26 +12,15 @@ SPRINGFIT_INSTANTIATION void SparseCholesky::substitute<12>(Rows<12>&) const;
 SPRINGFIT_INSTANTIATION void SparseCholesky::substitute<16>(Rows<16>&) const;
 SPRINGFIT_INSTANTIATION class BasicBlockCholesky<SparseCholesky>;
 SPRINGFIT_INSTANTIATION class SymmetricSolver<double>;
-SPRINGFIT_INSTANTIATION class SymmetricSolver<float>;
 SPRINGFIT_INSTANTIATION class CliqueMatrix<2, double>;
-SPRINGFIT_INSTANTIATION class CliqueMatrix<2, float>;
 SPRINGFIT_INSTANTIATION class CliqueMatrix<3, double>;
-SPRINGFIT_INSTANTIATION class CliqueMatrix<3, float>;
 SPRINGFIT_INSTANTIATION class detail::NodeCholesky<2, double>;
-SPRINGFIT_INSTANTIATION class detail::NodeCholesky<2, float>;
 SPRINGFIT_INSTANTIATION class detail::NodeCholesky<3, double>;
-SPRINGFIT_INSTANTIATION class detail::NodeCholesky<3, float>;
 SPRINGFIT_INSTANTIATION class TurnedFactor<2, double>;
-SPRINGFIT_INSTANTIATION class TurnedFactor<2, float>;
 SPRINGFIT_INSTANTIATION class TurnedFactor<3, double>;
-SPRINGFIT_INSTANTIATION class TurnedFactor<3, float>;
 SPRINGFIT_INSTANTIATION class TurnedSolver<2, double>;
-SPRINGFIT_INSTANTIATION class TurnedSolver<2, float>;
 SPRINGFIT_INSTANTIATION class TurnedSolver<3, double>;
-SPRINGFIT_INSTANTIATION class TurnedSolver<3, float>;
 SPRINGFIT_INSTANTIATION class fem::Stiffness<2, double>;
-SPRINGFIT_INSTANTIATION class fem::Stiffness<2, float>;
 SPRINGFIT_INSTANTIATION class fem::Stiffness<3, double>;
-SPRINGFIT_INSTANTIATION class fem::Stiffness<3, float>;
 
 } // namespace springfit

@@ -4,20 +4,12 @@
 namespace springfit {
 
 SPRINGFIT_INSTANTIATION class SpringBody<2, double>;
-SPRINGFIT_INSTANTIATION class SpringBody<2, float>;
 SPRINGFIT_INSTANTIATION class SpringBody<3, double>;
-SPRINGFIT_INSTANTIATION class SpringBody<3, float>;
 SPRINGFIT_INSTANTIATION class SpringBatch<2, double>;
-SPRINGFIT_INSTANTIATION class SpringBatch<2, float>;
 SPRINGFIT_INSTANTIATION class SpringBatch<3, double>;
-SPRINGFIT_INSTANTIATION class SpringBatch<3, float>;
 SPRINGFIT_INSTANTIATION class ImplicitBody<2, double>;
-SPRINGFIT_INSTANTIATION class ImplicitBody<2, float>;
 SPRINGFIT_INSTANTIATION class ImplicitBody<3, double>;
-SPRINGFIT_INSTANTIATION class ImplicitBody<3, float>;
 SPRINGFIT_INSTANTIATION class ProjectiveBody<2, double>;
-SPRINGFIT_INSTANTIATION class ProjectiveBody<2, float>;
 SPRINGFIT_INSTANTIATION class ProjectiveBody<3, double>;
-SPRINGFIT_INSTANTIATION class ProjectiveBody<3, float>;
 
 } // namespace springfit

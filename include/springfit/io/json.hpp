@@ -5,14 +5,10 @@
 #include <filesystem>
 #include <string>
 
-#include <nlohmann/json.hpp>
-
 #include <springfit/io/atomic_file.hpp>
+#include <springfit/io/json_value.hpp>
 
 namespace springfit::io {
-
-/// A JSON value whose objects keep the order in which they were written.
-using Json = nlohmann::ordered_json;
 
 /// The whole of a file as JSON. Throws FileError with the line where it is none, and for a file that cannot be read.
 [[nodiscard]] Json read_json(const std::filesystem::path& path);

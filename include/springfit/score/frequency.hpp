@@ -49,14 +49,17 @@ NaturalFrequency<Dim, Scalar> lowest_mode(const SymmetricMatrix<Scalar>& stiffne
     for (Index f = 0; f < free.n_free(); ++f) {
         m.template segment<Dim>(Dim * f).setConstant(masses(free.nodes()[static_cast<std::size_t>(f)]));
     }
-    const Index width = std::min<Index>(4, n);
-    DenseMatrix<Scalar> x(n, width);
+    constexpr int most = 4;
+    const Index width = std::min<Index>(most, n);
+    using Block = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, Eigen::Dynamic, most>;
+    using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, most, most>;
+    Block x(n, width);
     std::mt19937 random(1);
     std::uniform_real_distribution<Scalar> entry(-1, 1);
     for (Scalar& value : x.reshaped()) {
         value = entry(random);
     }
-    DenseMatrix<Scalar> pushed(n, width);
+    Block pushed(n, width);
     Scalar before = 0;
     for (result.iterations = 1; result.iterations <= options.max_iterations; ++result.iterations) {
         // y = K^-1 M x; on its span, K is y' M x and M is y' M y.
@@ -64,15 +67,15 @@ NaturalFrequency<Dim, Scalar> lowest_mode(const SymmetricMatrix<Scalar>& stiffne
         for (Index c = 0; c < width; ++c) {
             x.col(c) = solver.apply_factor(pushed.col(c));
         }
-        DenseMatrix<Scalar> small_stiffness = x.transpose() * pushed;
-        small_stiffness = (small_stiffness + small_stiffness.transpose().eval()) / 2;
-        const DenseMatrix<Scalar> small_mass = x.transpose() * m.asDiagonal() * x;
-        const Eigen::GeneralizedSelfAdjointEigenSolver<DenseMatrix<Scalar>> small(small_stiffness, small_mass);
+        const Small product = (x.transpose() * pushed).template cast<double>();
+        const Small small_stiffness = (product + product.transpose()) / 2;
+        const Small small_mass = (x.transpose() * m.asDiagonal() * x).template cast<double>();
+        const Eigen::GeneralizedSelfAdjointEigenSolver<Small> small(small_stiffness, small_mass);
         if (small.info() != Eigen::Success || !(small.eigenvalues()(0) > 0)) {
             return result;
         }
-        x = (x * small.eigenvectors()).eval();
-        const Scalar square = small.eigenvalues()(0);
+        x = (x * small.eigenvectors().template cast<Scalar>()).eval();
+        const auto square = static_cast<Scalar>(small.eigenvalues()(0));
         result.omega = std::sqrt(square);
         if (std::abs(square - before) <= options.tolerance * square) {
             result.status = Status::converged;

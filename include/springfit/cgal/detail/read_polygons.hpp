@@ -4,7 +4,10 @@
 #include <array>
 #include <cstdint>
 
-#include <CGAL/IO/polygon_soup_io.h>
+#include <CGAL/IO/OBJ.h>
+#include <CGAL/IO/OFF.h>
+#include <CGAL/IO/PLY.h>
+#include <CGAL/IO/STL.h>
 
 #include <springfit/cgal/detail/kernel.hpp>
 #include <springfit/cgal/detail/text_file.hpp>
@@ -86,7 +89,17 @@ inline PolygonSoup read_polygons(const std::filesystem::path& path) {
     require_readable(path);
     require_finite(path, extension);
     PolygonSoup soup;
-    const bool complete = CGAL::IO::read_polygon_soup(name, soup.points, soup.polygons);
+    const auto read = [&] { // one by one: CGAL's reader of them all compiles those of other formats too
+        if (extension == ".off") {
+            return CGAL::IO::read_OFF(name, soup.points, soup.polygons);
+        }
+        if (extension == ".obj") {
+            return CGAL::IO::read_OBJ(name, soup.points, soup.polygons);
+        }
+        return extension == ".stl" ? CGAL::IO::read_STL(name, soup.points, soup.polygons)
+                                   : CGAL::IO::read_PLY(name, soup.points, soup.polygons);
+    };
+    const bool complete = read();
     if (!complete && !(extension == ".obj" && soup.polygons.empty())) { // an OBJ file without faces is whole, but empty
         throw FileError(name, "cannot be read as " + extension.substr(1) + " surface: broken or cut short");
     }
