@@ -7,6 +7,7 @@
 #include <springfit/core/execution.hpp>
 #include <springfit/fit/problem.hpp>
 #include <springfit/fit/trajectory.hpp>
+#include <springfit/io/report_json.hpp>
 
 #include "cases.hpp"
 
