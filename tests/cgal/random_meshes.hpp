@@ -5,9 +5,7 @@
 
 #include <springfit/mesh/structured.hpp>
 
-namespace test {
-
-using springfit::Points;
+namespace springfit::test {
 
 template <int Dim, class Scalar>
 Points<Dim, Scalar> random_points(int n, Scalar low, Scalar high) {
@@ -22,4 +20,4 @@ Mesh shaken(Mesh mesh) {
     return mesh;
 }
 
-} // namespace test
+} // namespace springfit::test

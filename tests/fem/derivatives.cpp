@@ -3,7 +3,6 @@
 #include "tolerance.hpp"
 
 using namespace springfit;
-using test::Body;
 
 namespace {
 
@@ -50,8 +49,8 @@ TEST_CASE_TEMPLATE("forces and tangent are the derivatives of the energy, in eve
     check_derivatives<B>(fem::NeoHookean{2., 0.4}, 0.05);
 }
 
-TEST_CASE_TEMPLATE("forces and tangent are the derivatives of the energy, for every material", B, Body<2, double, Tri3>,
-                   Body<3, double, Tet4>, Body<3, double, Quad4>) {
+TEST_CASE_TEMPLATE("forces and tangent are the derivatives of the energy, for every material", B,
+                   test::Body<2, double, Tri3>, test::Body<3, double, Tet4>, test::Body<3, double, Quad4>) {
     check_derivatives<B>(fem::LinearElastic{2., 0.4}, 0.1);
     check_derivatives<B>(fem::Corotated{2., 0.4}, 0.1);
     check_derivatives<B>(fem::StVenantKirchhoff{2., 0.4}, 0.1);

@@ -5,7 +5,6 @@
 #include <springfit/fem/loads.hpp>
 
 using namespace springfit;
-using test::Body;
 
 namespace {
 
@@ -28,9 +27,9 @@ Scalar moment_z(const Points<Dim, Scalar>& nodes, const NodalLoad<Dim, Scalar>& 
 
 } // namespace
 
-TEST_CASE_TEMPLATE("tractions and pressures add up to force and moment of the rest surface", B, Body<2, double, Tri3>,
-                   Body<2, float, Tri6>, Body<2, double, Quad4>, Body<3, double, Tet4>, Body<3, double, Tet10>,
-                   Body<3, float, Hex8>) {
+TEST_CASE_TEMPLATE("tractions and pressures add up to force and moment of the rest surface", B,
+                   test::Body<2, double, Tri3>, test::Body<2, float, Tri6>, test::Body<2, double, Quad4>,
+                   test::Body<3, double, Tet4>, test::Body<3, double, Tet10>, test::Body<3, float, Hex8>) {
     constexpr int dim = B::dimension;
     using Scalar = typename B::Scalar;
     const auto mesh = test::box<dim, Scalar, typename B::Cell>(2);

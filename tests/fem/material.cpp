@@ -19,9 +19,9 @@ struct Setting {
 };
 
 template <class M, class Scalar>
-detail::Law<M, Scalar> law_of(const M& material, bool plane_stress) {
-    detail::Law<M, Scalar> law;
-    law.moduli = detail::Law<M, Scalar>::moduli_of(material, plane_stress);
+fem::detail::Law<M, Scalar> law_of(const M& material, bool plane_stress) {
+    fem::detail::Law<M, Scalar> law;
+    law.moduli = fem::detail::Law<M, Scalar>::moduli_of(material, plane_stress);
     return law;
 }
 
@@ -38,9 +38,9 @@ Eigen::Matrix<double, R, C> random_deformation(std::mt19937& random, double size
 
 /// W and its derivatives with U taken at the point.
 template <class M, int R, int C>
-void full_energy(const detail::Law<M, double>& law, const Eigen::Matrix<double, R, C>& f,
-                 detail::Invariant<R, C, double>& w) {
-    detail::Response<R, C, double> r;
+void full_energy(const fem::detail::Law<M, double>& law, const Eigen::Matrix<double, R, C>& f,
+                 fem::detail::Invariant<R, C, double>& w) {
+    fem::detail::Response<R, C, double> r;
     law.template evaluate<2>(f, r);
     const auto u = law.volumetric(r.theta.value);
     w.value = r.shear.value + u.value;
@@ -50,11 +50,11 @@ void full_energy(const detail::Law<M, double>& law, const Eigen::Matrix<double, 
 }
 
 template <class M, int R, int C>
-void check_derivatives(const detail::Law<M, double>& law, double size) {
+void check_derivatives(const fem::detail::Law<M, double>& law, double size) {
     std::mt19937 random(11);
     for (int trial = 0; trial < 10; ++trial) {
         const auto f = random_deformation<R, C>(random, size);
-        detail::Invariant<R, C, double> w;
+        fem::detail::Invariant<R, C, double> w;
         full_energy(law, f, w);
         Eigen::Matrix<double, R, C> gradient;
         Eigen::Matrix<double, R * C, R * C> hessian;
@@ -64,8 +64,8 @@ void check_derivatives(const detail::Law<M, double>& law, double size) {
             auto behind = f;
             ahead.reshaped()(i) += h;
             behind.reshaped()(i) -= h;
-            detail::Invariant<R, C, double> plus;
-            detail::Invariant<R, C, double> minus;
+            fem::detail::Invariant<R, C, double> plus;
+            fem::detail::Invariant<R, C, double> minus;
             full_energy(law, ahead, plus);
             full_energy(law, behind, minus);
             gradient.reshaped()(i) = (plus.value - minus.value) / (2 * h);
@@ -103,15 +103,15 @@ TEST_CASE("the polar decomposition keeps its derivatives where a cell is turned 
         Eigen::Matrix3d f = random_deformation<3, 3>(random, 0.3);
         f.col(1) *= -0.6;
         inverted += f.determinant() < 0 ? 1 : 0;
-        const Eigen::Matrix3d r = detail::rotation_of(f);
+        const Eigen::Matrix3d r = fem::detail::rotation_of(f);
         CHECK((r.transpose() * r - Eigen::Matrix3d::Identity()).norm() < 1e-12);
         CHECK(r.determinant() > 0);
-        detail::Response<3, 3, double> at;
+        fem::detail::Response<3, 3, double> at;
         law.evaluate<2>(f, at);
         const Eigen::Matrix3d direction = random_deformation<3, 3>(random, 0.5);
         const double h = 1e-6;
-        detail::Response<3, 3, double> plus;
-        detail::Response<3, 3, double> minus;
+        fem::detail::Response<3, 3, double> plus;
+        fem::detail::Response<3, 3, double> minus;
         law.evaluate<1>(Eigen::Matrix3d(f + h * direction), plus);
         law.evaluate<1>(Eigen::Matrix3d(f - h * direction), minus);
         const Eigen::Matrix3d slope = (plus.theta.gradient - minus.theta.gradient) / (2 * h);
@@ -130,7 +130,7 @@ TEST_CASE_TEMPLATE("rest is free of stress and has Hooke's tangent", S, SETTINGS
     const double lambda =
         young * poisson / (S::plane_stress ? 1 - poisson * poisson : (1 + poisson) * (1 - 2 * poisson));
     const auto check = [&](const auto& law) {
-        detail::Invariant<r, c, double> w;
+        fem::detail::Invariant<r, c, double> w;
         const Eigen::Matrix<double, r, c> identity = Eigen::Matrix<double, r, c>::Identity();
         full_energy(law, identity, w);
         CHECK(std::abs(w.value) < 1e-15);
@@ -155,8 +155,8 @@ TEST_CASE_TEMPLATE("a finite rotation changes neither energy nor the size of the
     std::mt19937 random(7);
     const Eigen::Matrix3d turn = Eigen::AngleAxisd(2.1, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
     const Eigen::Matrix3d f = random_deformation<3, 3>(random, 0.3);
-    detail::Invariant<3, 3, double> w;
-    detail::Invariant<3, 3, double> turned;
+    fem::detail::Invariant<3, 3, double> w;
+    fem::detail::Invariant<3, 3, double> turned;
     full_energy(law, f, w);
     full_energy(law, Eigen::Matrix3d(turn * f), turned);
     CHECK(test::relative(turned.value, w.value, w.value) < 1e-12);
@@ -172,13 +172,13 @@ TEST_CASE_TEMPLATE("plane stress is the solid with a thickness free of stress", 
         const Eigen::Matrix2d f = random_deformation<2, 2>(random, 0.2);
         Eigen::Matrix3d full = Eigen::Matrix3d::Identity();
         full.topLeftCorner<2, 2>() = f;
-        detail::Invariant<3, 3, double> w;
+        fem::detail::Invariant<3, 3, double> w;
         for (int iteration = 0; iteration < 30; ++iteration) {
             full_energy(solid, full, w);
             full(2, 2) -= w.gradient(2, 2) / w.hessian(8, 8);
         }
         full_energy(solid, full, w);
-        detail::Invariant<2, 2, double> plane;
+        fem::detail::Invariant<2, 2, double> plane;
         full_energy(sheet, f, plane);
         CHECK(test::relative(plane.value, w.value, w.value) < 1e-12);
         CHECK((plane.gradient - w.gradient.topLeftCorner<2, 2>()).norm() < 1e-12 * w.gradient.norm());
@@ -186,7 +186,7 @@ TEST_CASE_TEMPLATE("plane stress is the solid with a thickness free of stress", 
         Eigen::Matrix<double, 3, 2> surface = Eigen::Matrix<double, 3, 2>::Zero();
         surface.topRows<2>() = f;
         const Eigen::Matrix3d turn = Eigen::AngleAxisd(1.3, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
-        detail::Invariant<3, 2, double> membrane;
+        fem::detail::Invariant<3, 2, double> membrane;
         full_energy(sheet, Eigen::Matrix<double, 3, 2>(turn * surface), membrane);
         CHECK(test::relative(membrane.value, w.value, w.value) < 1e-12);
     }

@@ -3,7 +3,6 @@
 #include "tolerance.hpp"
 
 using namespace springfit;
-using test::Body;
 
 namespace {
 
@@ -133,7 +132,7 @@ TEST_CASE("what cannot be a body is refused by name") {
 
 TEST_CASE("a cell turned inside out has no finite neo-Hookean energy") {
     const auto mesh = test::box<3, double, Tet4>(1);
-    for (const auto& options : test::settings<Body<3, double, Tet4>>()) {
+    for (const auto& options : test::settings<test::Body<3, double, Tet4>>()) {
         const fem::Model model{mesh, fem::NeoHookean{.young = 1., .poisson = 0.3}, 1., options};
         Points<3, double> x = mesh.nodes;
         x.row(2) *= -1;
