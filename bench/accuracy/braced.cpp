@@ -16,7 +16,7 @@ Row hexahedra_row(const std::array<int, 3>& cells, double poisson, const Setting
     const auto mesh = hex_grid<double>(cells, {box_size[0], box_size[1], box_size[2]});
     const auto network = springs_along_edges(mesh, {.diagonals = true, .density = density});
     const fem::Model model{mesh, fem::LinearElastic{young, poisson}, density};
-    Body<3, double> body{mesh.nodes, network.mass, boundary_nodes(mesh), {}};
+    Specimen<3, double> body{mesh.nodes, network.mass, boundary_nodes(mesh), {}};
     body.clamps = {{side_nodes<3, double>(mesh.nodes, {0, false}, 0.02), {}}};
     CaseSettings cases;
     cases.training = 60;
@@ -36,7 +36,7 @@ Row membrane_row(double poisson, const Settings& settings) {
     const auto mesh = membrane(rectangle_mesh(0.8, 0.4, 150));
     const auto network = springs_along_edges(mesh, {.density = density});
     const fem::Model model{mesh, fem::StVenantKirchhoff{young, poisson}, density};
-    Body<3, double> body{mesh.nodes, network.mass, std::vector<int>(static_cast<std::size_t>(mesh.n_nodes())), {}};
+    Specimen<3, double> body{mesh.nodes, network.mass, std::vector<int>(static_cast<std::size_t>(mesh.n_nodes())), {}};
     std::iota(body.surface.begin(), body.surface.end(), 0);
     body.clamps = {
         {boundary_nodes(mesh), [](const Vector<3, double>& rest, double) -> Vector<3, double> { return 1.04 * rest; }}};

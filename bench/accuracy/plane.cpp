@@ -22,7 +22,7 @@ template <CellType Cell, fem::Material Mat>
 Row plane_row(const std::string& name, const Mesh<2, double, Cell>& mesh, const Mat& material, bool acceleration,
               const Settings& settings) {
     const auto network = springs_along_edges(mesh, {.diagonals = !SimplexCell<Cell>, .density = density});
-    Body<2, double> body{mesh.nodes, network.mass, boundary_nodes(mesh), {}};
+    Specimen<2, double> body{mesh.nodes, network.mass, boundary_nodes(mesh), {}};
     body.clamps = {{side_nodes<2, double>(mesh.nodes, {0, false}, 0.02), {}}};
     constexpr bool is_linear = std::same_as<Mat, fem::LinearElastic>;
     CaseSettings cases;

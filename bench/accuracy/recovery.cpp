@@ -22,7 +22,7 @@ template <int Dim>
 struct Hidden {
     SpringNetwork<Dim, double> network;
     SpringNetwork<Dim, double> prior;
-    Body<Dim, double> body;
+    Specimen<Dim, double> body;
     double period = 0; ///< of the slowest vibration, s
 };
 

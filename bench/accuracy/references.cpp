@@ -36,7 +36,7 @@ std::string name_of(MaterialKind material) {
     }
 }
 
-CaseSets<3> record_solid(const TetMesh& mesh, const ReferenceKind& reference, const Body<3, double>& body,
+CaseSets<3> record_solid(const TetMesh& mesh, const ReferenceKind& reference, const Specimen<3, double>& body,
                          const CaseSettings& cases, const Settings& settings) {
     return with_model(mesh, reference,
                       [&](const auto& model) { return record_sets(model, edges(mesh), body, cases, settings); });

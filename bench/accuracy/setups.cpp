@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <numbers>
 
-#include <springfit/motion/noise.hpp>
+#include <springfit/cases/noise.hpp>
 
 #include "solid.hpp"
 #include "svg.hpp"

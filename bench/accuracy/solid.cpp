@@ -40,8 +40,8 @@ void add_split_scores(Row& row, const TetMesh& mesh, const ReferenceKind& refere
 
 } // namespace
 
-Body<3, double> body_of(const TetMesh& mesh, int axis, double depth) {
-    Body<3, double> body{mesh.nodes, node_masses(mesh, density), boundary_nodes(mesh), {}};
+Specimen<3, double> body_of(const TetMesh& mesh, int axis, double depth) {
+    Specimen<3, double> body{mesh.nodes, node_masses(mesh, density), boundary_nodes(mesh), {}};
     body.clamps = {{side_nodes<3, double>(mesh.nodes, {axis, false}, depth), {}}};
     return body;
 }
@@ -83,7 +83,7 @@ Row solid_row(const std::string& name, const TetMesh& mesh, const ReferenceKind&
     return row;
 }
 
-std::vector<Row> solid_rows(const std::string& name, const TetMesh& mesh, const Body<3, double>& body,
+std::vector<Row> solid_rows(const std::string& name, const TetMesh& mesh, const Specimen<3, double>& body,
                             const ReferenceKind& reference, const CaseSettings& cases,
                             const std::vector<NetworkKind>& networks, const Methods& methods,
                             const Settings& settings) {

@@ -43,12 +43,13 @@ inline constexpr NetworkKind with_both{true, true};
 }
 
 /// Clamped at the lowest side along an axis, as deep as a part of the extent.
-[[nodiscard]] Body<3, double> body_of(const TetMesh& mesh, int axis = 0, double depth = 0.02);
+[[nodiscard]] Specimen<3, double> body_of(const TetMesh& mesh, int axis = 0, double depth = 0.02);
 
 // What the reference does (references.cpp).
 
-[[nodiscard]] CaseSets<3> record_solid(const TetMesh& mesh, const ReferenceKind& reference, const Body<3, double>& body,
-                                       const CaseSettings& cases, const Settings& settings);
+[[nodiscard]] CaseSets<3> record_solid(const TetMesh& mesh, const ReferenceKind& reference,
+                                       const Specimen<3, double>& body, const CaseSettings& cases,
+                                       const Settings& settings);
 /// Scenarios scaled to a strain, with their equilibria.
 [[nodiscard]] Cases<3> record_solid(const TetMesh& mesh, const ReferenceKind& reference,
                                     const std::vector<Scenario<3, double>>& scenarios, double strain,
@@ -80,7 +81,7 @@ inline constexpr NetworkKind with_both{true, true};
                             const std::vector<Score>& edge_forms, const Methods& methods, const Settings& settings);
 
 /// One row per network, of a body clamped by `body`.
-[[nodiscard]] std::vector<Row> solid_rows(const std::string& name, const TetMesh& mesh, const Body<3, double>& body,
+[[nodiscard]] std::vector<Row> solid_rows(const std::string& name, const TetMesh& mesh, const Specimen<3, double>& body,
                                           const ReferenceKind& reference, const CaseSettings& cases,
                                           const std::vector<NetworkKind>& networks, const Methods& methods,
                                           const Settings& settings);

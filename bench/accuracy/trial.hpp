@@ -3,11 +3,11 @@
 
 #include <chrono>
 
+#include <springfit/cases/load_cases.hpp>
+#include <springfit/cases/strain.hpp>
 #include <springfit/closed_form/all.hpp>
 #include <springfit/fit/trajectory.hpp>
-#include <springfit/motion/load_cases.hpp>
 #include <springfit/motion/record_static.hpp>
-#include <springfit/motion/strain.hpp>
 
 #include "study.hpp"
 
@@ -79,7 +79,7 @@ record_equilibria(const Reference& reference, const NodePairs& pairs,
 /// The four sets of a body. Held-out cases depend on the seed alone, not on how many are trained on.
 template <class Reference>
 [[nodiscard]] CaseSets<Reference::dimension> record_sets(const Reference& reference, const NodePairs& pairs,
-                                                         const Body<Reference::dimension, double>& body,
+                                                         const Specimen<Reference::dimension, double>& body,
                                                          const CaseSettings& cases, const Settings& settings) {
     const auto held_out = random_load_cases(body, {.training = cases.clamps,
                                                    .clamps = cases.clamps,

@@ -5,10 +5,10 @@
 #include <string>
 #include <variant>
 
+#include <springfit/cases/specimen.hpp>
 #include <springfit/closed_form/cauchy_split.hpp>
 #include <springfit/io/motion_file.hpp>
 #include <springfit/mesh/mesh.hpp>
-#include <springfit/motion/body.hpp>
 #include <springfit/network/spring_network.hpp>
 
 #include "options.hpp"
@@ -60,7 +60,7 @@ template <int Dim>
 
 /// A mesh as the load cases see it, without clamps: its surface is what a hand can reach, every node of a sheet.
 template <int Dim>
-[[nodiscard]] springfit::Body<Dim, double> body_of(const AnyMesh& mesh, const FitOptions& options);
+[[nodiscard]] springfit::Specimen<Dim, double> body_of(const AnyMesh& mesh, const FitOptions& options);
 
 /// The sides that `--clamp` names, or y-min.
 [[nodiscard]] std::vector<std::string> sides_to_clamp(const FitOptions& options);

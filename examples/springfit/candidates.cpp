@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <tuple>
 
+#include <springfit/cases/load_kinds.hpp>
 #include <springfit/fit/acceleration_objective.hpp>
 #include <springfit/fit/dominant_term.hpp>
 #include <springfit/fit/exact.hpp>
-#include <springfit/motion/load_kinds.hpp>
 #include <springfit/network/damping.hpp>
 #include <springfit/network/forces.hpp>
 #include <springfit/score/motion_error.hpp>

@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <numbers>
 
-#include <springfit/motion/clamp_sets.hpp>
-#include <springfit/motion/load_cases.hpp>
+#include <springfit/cases/clamp_sets.hpp>
+#include <springfit/cases/load_cases.hpp>
 #include <springfit/motion/replay.hpp>
 #include <springfit/step/stable_step.hpp>
 
@@ -77,7 +77,7 @@ namespace {
 
 /// Equilibria under several clamps, from which matching of motion learns, and others that judge it.
 template <int Dim>
-void add_statics(const FemReference<Dim>& reference, const Body<Dim, double>& body, const FitOptions& options,
+void add_statics(const FemReference<Dim>& reference, const Specimen<Dim, double>& body, const FitOptions& options,
                  const Execution& execution, const std::function<bool(const std::vector<int>&)>& holds,
                  ReferenceCases<Dim>& result) {
     auto split = random_load_cases(body, {.training = options.static_cases.value_or(60),
@@ -133,7 +133,7 @@ void add_statics(const FemReference<Dim>& reference, const Body<Dim, double>& bo
 } // namespace
 
 template <int Dim>
-ReferenceCases<Dim> record_cases(const FemReference<Dim>& reference, Body<Dim, double> body,
+ReferenceCases<Dim> record_cases(const FemReference<Dim>& reference, Specimen<Dim, double> body,
                                  const Discretisation<Dim>& network, const FitOptions& options,
                                  const Execution& execution,
                                  const std::function<bool(const std::vector<int>&)>& holds) {
@@ -277,10 +277,10 @@ ReferenceCases<Dim> split_recorded(std::vector<Motion<Dim, double>> motions, con
 
 template std::vector<int> clamped_nodes<2>(const std::vector<std::string>&, const Points<2, double>&);
 template std::vector<int> clamped_nodes<3>(const std::vector<std::string>&, const Points<3, double>&);
-template ReferenceCases<2> record_cases<2>(const FemReference<2>&, Body<2, double>, const Discretisation<2>&,
+template ReferenceCases<2> record_cases<2>(const FemReference<2>&, Specimen<2, double>, const Discretisation<2>&,
                                            const FitOptions&, const Execution&,
                                            const std::function<bool(const std::vector<int>&)>&);
-template ReferenceCases<3> record_cases<3>(const FemReference<3>&, Body<3, double>, const Discretisation<3>&,
+template ReferenceCases<3> record_cases<3>(const FemReference<3>&, Specimen<3, double>, const Discretisation<3>&,
                                            const FitOptions&, const Execution&,
                                            const std::function<bool(const std::vector<int>&)>&);
 template ReferenceCases<2> split_recorded<2>(std::vector<Motion<2, double>>, const Discretisation<2>&,

@@ -33,10 +33,10 @@ struct ReferenceCases {
 /// `body` is that of the reference; `network` sets the damping that is light for its springs, where no other was asked
 /// for. Equilibria whose clamped nodes `holds` does not accept are left out, with a warning.
 template <int Dim>
-[[nodiscard]] ReferenceCases<Dim> record_cases(const FemReference<Dim>& reference, springfit::Body<Dim, double> body,
-                                               const Discretisation<Dim>& network, const FitOptions& options,
-                                               const springfit::Execution& execution,
-                                               const std::function<bool(const std::vector<int>&)>& holds);
+[[nodiscard]] ReferenceCases<Dim>
+record_cases(const FemReference<Dim>& reference, springfit::Specimen<Dim, double> body,
+             const Discretisation<Dim>& network, const FitOptions& options, const springfit::Execution& execution,
+             const std::function<bool(const std::vector<int>&)>& holds);
 
 /// Splits recorded motions: the last quarter of several, or the last third of the time of a single one, is held out.
 /// Throws InvalidArgument where a motion has another number of nodes than the body, or too few frames.

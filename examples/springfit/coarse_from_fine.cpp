@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "coarse_from_fine.hpp"
 
-#include <springfit/motion/clamp_sets.hpp>
+#include <springfit/cases/clamp_sets.hpp>
 #include <springfit/motion/replay.hpp>
 #include <springfit/score/motion_error.hpp>
 #include <springfit/step/equilibrium.hpp>

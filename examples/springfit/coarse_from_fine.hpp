@@ -15,7 +15,7 @@ public:
     /// gets none, and where `--clamp` holds too few of its nodes.
     CoarseFromFine(const FineMesh& fine, const FitOptions& options, Discretisation<Dim>& network);
 
-    [[nodiscard]] const springfit::Body<Dim, double>& body() const { return m_body; }
+    [[nodiscard]] const springfit::Specimen<Dim, double>& body() const { return m_body; }
 
     /// The boundary of the fine mesh, carried by the network.
     [[nodiscard]] const springfit::CarriedSurface<Dim, double>& surface() const { return m_surface; }
@@ -39,7 +39,7 @@ public:
 private:
     const FineMesh& m_fine;
     springfit::Points<Dim, double> m_network_positions; ///< at rest
-    springfit::Body<Dim, double> m_body;
+    springfit::Specimen<Dim, double> m_body;
     springfit::CarriedSurface<Dim, double> m_surface;
     std::vector<int> m_surface_nodes;                       ///< of the fine mesh
     std::vector<springfit::Motion<Dim, double>> m_held_out; ///< of the fine mesh

@@ -46,14 +46,14 @@ Discretisation<Dim> discretise(const AnyMesh& any, const FitOptions& options) {
 }
 
 template <int Dim>
-Body<Dim, double> body_of(const AnyMesh& any, const FitOptions& options) {
+Specimen<Dim, double> body_of(const AnyMesh& any, const FitOptions& options) {
     return std::visit(
-        [&]<int MeshDim, CellType Cell>(const Mesh<MeshDim, double, Cell>& mesh) -> Body<Dim, double> {
+        [&]<int MeshDim, CellType Cell>(const Mesh<MeshDim, double, Cell>& mesh) -> Specimen<Dim, double> {
             if constexpr (MeshDim != Dim) {
                 throw InvalidArgument("mesh", text("dimension ", Dim), text(MeshDim));
             } else {
                 const auto masses = node_masses(mesh, options.density, options.thickness.value_or(1));
-                Body<Dim, double> body{mesh.nodes, masses, {}, {}};
+                Specimen<Dim, double> body{mesh.nodes, masses, {}, {}};
                 if constexpr (Cell::dimension == 3) {
                     body.surface = boundary_nodes(mesh);
                 } else { // a hand reaches every node of a sheet
@@ -89,8 +89,8 @@ AnyMesh mesh_of(const io::RecordedMotion<Dim, double>& recorded, const std::stri
 
 template Discretisation<2> discretise<2>(const AnyMesh&, const FitOptions&);
 template Discretisation<3> discretise<3>(const AnyMesh&, const FitOptions&);
-template Body<2, double> body_of<2>(const AnyMesh&, const FitOptions&);
-template Body<3, double> body_of<3>(const AnyMesh&, const FitOptions&);
+template Specimen<2, double> body_of<2>(const AnyMesh&, const FitOptions&);
+template Specimen<3, double> body_of<3>(const AnyMesh&, const FitOptions&);
 template AnyMesh mesh_of<2>(const io::RecordedMotion<2, double>&, const std::string&);
 template AnyMesh mesh_of<3>(const io::RecordedMotion<3, double>&, const std::string&);
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <springfit/cases/strain.hpp>
 #include <springfit/fem/dynamics.hpp>
 #include <springfit/fem/statics.hpp>
 #include <springfit/mesh/structured.hpp>
-#include <springfit/motion/strain.hpp>
 #include <springfit/motion/transfer.hpp>
 #include <springfit/solve/symmetric_solver.hpp>
 

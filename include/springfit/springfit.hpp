@@ -4,6 +4,9 @@
 /// Everything that needs Eigen alone. Meshing (`cgal/`), Ipopt (`ipopt/`), files (`io/`) and threads
 /// (`parallel/`) are included one by one.
 
+#include <springfit/cases/load_cases.hpp>
+#include <springfit/cases/noise.hpp>
+#include <springfit/cases/strain.hpp>
 #include <springfit/closed_form/all.hpp>
 #include <springfit/closed_form/cauchy_split.hpp>
 #include <springfit/closed_form/delingette.hpp>
@@ -16,11 +19,8 @@
 #include <springfit/fit/exact.hpp>
 #include <springfit/fit/trajectory.hpp>
 #include <springfit/mesh/structured.hpp>
-#include <springfit/motion/load_cases.hpp>
-#include <springfit/motion/noise.hpp>
 #include <springfit/motion/record_static.hpp>
 #include <springfit/motion/replay.hpp>
-#include <springfit/motion/strain.hpp>
 #include <springfit/motion/surface.hpp>
 #include <springfit/motion/transfer.hpp>
 #include <springfit/motion/user_reference.hpp>

@@ -12,6 +12,7 @@
 
 #define SPRINGFIT_INSTANTIATION extern template
 
+#include <springfit/compiled/cases.ipp>
 #include <springfit/compiled/closed_form.ipp>
 #include <springfit/compiled/fem_plane.ipp>
 #include <springfit/compiled/fem_solid.ipp>
@@ -20,7 +21,6 @@
 #include <springfit/compiled/fit_float.ipp>
 #include <springfit/compiled/fit_trajectory_2d.ipp>
 #include <springfit/compiled/fit_trajectory_3d.ipp>
-#include <springfit/compiled/motion.ipp>
 #include <springfit/compiled/network.ipp>
 #include <springfit/compiled/score.ipp>
 #include <springfit/compiled/solve.ipp>

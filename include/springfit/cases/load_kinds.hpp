@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include <springfit/motion/detail/load_fields.hpp>
+#include <springfit/cases/detail/load_fields.hpp>
 
 namespace springfit {
 
@@ -46,18 +46,18 @@ inline constexpr std::array held_out_kinds{LoadKind::gravity, LoadKind::stretch,
 /// Forces go by positions, not by node numbers; on a flat sheet in space they lie within its plane, where its stiffness
 /// is. Throws InvalidArgument where no node is free, and for kinds that act on the surface where none of its nodes is.
 template <int Dim, std::floating_point Scalar>
-[[nodiscard]] Scenario<Dim, Scalar> random_load(LoadKind kind, const Body<Dim, Scalar>& body, unsigned seed) {
+[[nodiscard]] Scenario<Dim, Scalar> random_load(LoadKind kind, const Specimen<Dim, Scalar>& body, unsigned seed) {
     validate(body);
     Scenario<Dim, Scalar> scenario;
     scenario.name = text(to_string(kind), " ", seed);
     scenario.clamps = body.clamps;
     const std::vector<int> clamped = clamped_nodes(scenario, body.n_nodes());
     require(static_cast<Index>(clamped.size()) < body.n_nodes(), "body", "nodes left to move", "none");
-    const detail::LoadGround<Dim, Scalar> ground(body, clamped);
+    const detail::LoadFieldSampler<Dim, Scalar> ground(body, clamped);
     std::mt19937 random(seed);
     const auto field = [&]() -> Points<Dim, Scalar> {
         const bool on_surface = kind == LoadKind::patch || kind == LoadKind::pull || kind == LoadKind::press;
-        require(!on_surface || !ground.reach().empty(), "body", "free surface nodes", "none");
+        require(!on_surface || !ground.free_surface_nodes().empty(), "body", "free surface nodes", "none");
         switch (kind) {
         case LoadKind::body_force: return ground.waves(random);
         case LoadKind::patch: return ground.patch(random);

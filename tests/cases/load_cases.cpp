@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include <springfit/motion/load_cases.hpp>
+#include <springfit/cases/load_cases.hpp>
 
 #include "bodies.hpp"
 
@@ -16,14 +16,14 @@ constexpr LoadKind all_kinds[] = {LoadKind::body_force, LoadKind::patch, LoadKin
 
 /// A box clamped at its left end.
 template <int Dim, class Scalar>
-Body<Dim, Scalar> clamped_box() {
+Specimen<Dim, Scalar> clamped_box() {
     auto body = test::box_body<Dim, Scalar>();
     body.clamps = {{side_nodes(body.rest_positions, {0, false}), {}}};
     return body;
 }
 
 template <int Dim, class Scalar>
-Points<Dim, Scalar> forces_of(const Scenario<Dim, Scalar>& scenario, const Body<Dim, Scalar>& body) {
+Points<Dim, Scalar> forces_of(const Scenario<Dim, Scalar>& scenario, const Specimen<Dim, Scalar>& body) {
     return external_forces<Dim, Scalar>(scenario, body.masses, Scalar(0));
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tolerance.hpp"
 
+#include <springfit/cases/clamp_sets.hpp>
 #include <springfit/mesh/structured.hpp>
-#include <springfit/motion/clamp_sets.hpp>
 
 #include "bodies.hpp"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tolerance.hpp"
 
+#include <springfit/cases/strain.hpp>
 #include <springfit/fem/statics.hpp>
 #include <springfit/motion/record_static.hpp>
-#include <springfit/motion/strain.hpp>
 #include <springfit/network/topology.hpp>
 #include <springfit/step/static_solver.hpp>
 
@@ -85,7 +85,7 @@ TEST_CASE_TEMPLATE("loads are scaled to the strain that is wanted", T, test::Spa
         }
     }();
     const fem::Model model{mesh, fem::LinearElastic{1e4, 0.3}, 1000.};
-    const Body<dim, double> body{mesh.nodes, model.masses(), boundary_nodes(mesh), {}};
+    const Specimen<dim, double> body{mesh.nodes, model.masses(), boundary_nodes(mesh), {}};
     auto split = random_load_cases(body, {.training = 6, .clamps = 2});
     auto cases = split.training;
     cases.insert(cases.end(), split.held_out_kinds.begin(), split.held_out_kinds.end());

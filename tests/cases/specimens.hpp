@@ -4,18 +4,18 @@
 #include <numeric>
 #include <random>
 
+#include <springfit/cases/specimen.hpp>
 #include <springfit/mesh/structured.hpp>
-#include <springfit/motion/body.hpp>
 #include <springfit/network/masses.hpp>
 
 namespace springfit::test {
 
 /// A box three times as long as wide, its inner nodes moved, not clamped.
 template <int Dim, class Scalar>
-[[nodiscard]] Body<Dim, Scalar> box_body() {
+[[nodiscard]] Specimen<Dim, Scalar> box_body() {
     const auto body_of = [](auto mesh) {
         jitter(mesh, Scalar(0.2), 3);
-        return Body<Dim, Scalar>{mesh.nodes, node_masses(mesh, Scalar(1000)), boundary_nodes(mesh), {}};
+        return Specimen<Dim, Scalar>{mesh.nodes, node_masses(mesh, Scalar(1000)), boundary_nodes(mesh), {}};
     };
     if constexpr (Dim == 2) {
         return body_of(triangle_grid<Scalar>({9, 3}, {Scalar(3), Scalar(1)}));
@@ -26,9 +26,9 @@ template <int Dim, class Scalar>
 
 /// A flat sheet in space, 2 by 1; all of it is surface.
 template <class Scalar>
-[[nodiscard]] Body<3, Scalar> sheet_body() {
+[[nodiscard]] Specimen<3, Scalar> sheet_body() {
     const auto plane = triangle_grid<Scalar>({8, 4}, {Scalar(2), Scalar(1)});
-    Body<3, Scalar> body{membrane(plane).nodes, node_masses(plane, Scalar(1)), {}, {}};
+    Specimen<3, Scalar> body{membrane(plane).nodes, node_masses(plane, Scalar(1)), {}, {}};
     body.surface.resize(static_cast<std::size_t>(body.n_nodes()));
     std::iota(body.surface.begin(), body.surface.end(), 0);
     return body;
@@ -37,7 +37,7 @@ template <class Scalar>
 /// A body with its nodes in another order, and the way back.
 template <int Dim, class Scalar>
 struct Renumbered {
-    Body<Dim, Scalar> body;
+    Specimen<Dim, Scalar> body;
     std::vector<int> old; ///< number in the first body of each node of this one
 
     [[nodiscard]] std::vector<int> back(std::vector<int> nodes) const {
@@ -50,7 +50,7 @@ struct Renumbered {
 };
 
 template <int Dim, class Scalar>
-[[nodiscard]] Renumbered<Dim, Scalar> renumbered(const Body<Dim, Scalar>& body, unsigned seed) {
+[[nodiscard]] Renumbered<Dim, Scalar> renumbered(const Specimen<Dim, Scalar>& body, unsigned seed) {
     Renumbered<Dim, Scalar> result;
     result.old.resize(static_cast<std::size_t>(body.n_nodes()));
     std::iota(result.old.begin(), result.old.end(), 0);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include <springfit/motion/load_cases.hpp>
+#include <springfit/cases/load_cases.hpp>
 
 namespace springfit {
 

@@ -8,25 +8,25 @@
 
 #include <Eigen/Eigenvalues>
 
-#include <springfit/motion/body.hpp>
+#include <springfit/cases/specimen.hpp>
 
 namespace springfit::detail {
 
 /// What random fields of force on a body are laid out by. All of it goes by positions, none of it by node numbers.
 template <int Dim, std::floating_point Scalar>
-class LoadGround {
+class LoadFieldSampler {
 public:
     using Point = Vector<Dim, Scalar>;
     using Field = Points<Dim, Scalar>;
 
-    LoadGround(const Body<Dim, Scalar>& body, const std::vector<int>& clamped)
+    LoadFieldSampler(const Specimen<Dim, Scalar>& body, const std::vector<int>& clamped)
         : m_body(&body), m_is_held(static_cast<std::size_t>(body.n_nodes()), false) {
         for (int node : clamped) {
             m_is_held[static_cast<std::size_t>(node)] = true;
         }
         for (int node : body.surface) {
             if (!m_is_held[static_cast<std::size_t>(node)]) {
-                m_reach.push_back(node);
+                m_free_surface_nodes.push_back(node);
             }
         }
         m_low = x().rowwise().minCoeff();
@@ -37,7 +37,7 @@ public:
 
     [[nodiscard]] bool is_held(Index node) const { return m_is_held[static_cast<std::size_t>(node)]; }
     /// Surface nodes that are not clamped.
-    [[nodiscard]] const std::vector<int>& reach() const { return m_reach; }
+    [[nodiscard]] const std::vector<int>& free_surface_nodes() const { return m_free_surface_nodes; }
 
     [[nodiscard]] Field uniform(std::mt19937& random) const { return direction(random).replicate(1, x().cols()); }
 
@@ -61,7 +61,7 @@ public:
         const Point middle = x().col(nearest(point(random)));
         const Point along = direction(random);
         const Scalar size = std::max(radius(random), least_radius(middle));
-        for (int node : m_reach) {
+        for (int node : m_free_surface_nodes) {
             field.col(node) = weight(node, middle, size) * along;
         }
         return field;
@@ -76,7 +76,7 @@ public:
             other = x().col(nearest(point(random)));
         }
         if ((one - other).norm() < m_size / 3) {
-            for (int node : m_reach) {
+            for (int node : m_free_surface_nodes) {
                 if ((x().col(node) - one).norm() > (other - one).norm()) {
                     other = x().col(node);
                 }
@@ -89,7 +89,7 @@ public:
         Scalar totals[2] = {0, 0};
         Point middles[2] = {Point::Zero(), Point::Zero()};
         for (int end = 0; end < 2; ++end) {
-            for (int node : m_reach) {
+            for (int node : m_free_surface_nodes) {
                 const Scalar share = m_body->masses(node) * weight(node, ends[end], size);
                 totals[end] += share;
                 middles[end] += share * x().col(node);
@@ -98,7 +98,7 @@ public:
         }
         const Point along = (middles[1] - middles[0]).normalized();
         const Scalar force = std::min(totals[0], totals[1]);
-        for (int node : m_reach) {
+        for (int node : m_free_surface_nodes) {
             field.col(node) =
                 (force / totals[1] * weight(node, ends[1], size) - force / totals[0] * weight(node, ends[0], size)) *
                 along;
@@ -142,13 +142,13 @@ public:
         const Point along = direction(random);
         Scalar low = std::numeric_limits<Scalar>::max();
         Scalar high = std::numeric_limits<Scalar>::lowest();
-        for (int node : m_reach) {
+        for (int node : m_free_surface_nodes) {
             low = std::min(low, along.dot(x().col(node)));
             high = std::max(high, along.dot(x().col(node)));
         }
         require(high > low, "body", "free surface nodes apart from each other", "none");
         Field field = Field::Zero(Dim, x().cols());
-        for (int node : m_reach) {
+        for (int node : m_free_surface_nodes) {
             const Scalar d = (2 * along.dot(x().col(node)) - low - high) / (high - low);
             field.col(node) = -d * std::abs(d) * along;
         }
@@ -190,7 +190,7 @@ private:
     }
 
     [[nodiscard]] int nearest(const Point& at) const {
-        return *std::min_element(m_reach.begin(), m_reach.end(), [&](int a, int b) {
+        return *std::min_element(m_free_surface_nodes.begin(), m_free_surface_nodes.end(), [&](int a, int b) {
             return (x().col(a) - at).squaredNorm() < (x().col(b) - at).squaredNorm();
         });
     }
@@ -203,7 +203,7 @@ private:
     [[nodiscard]] Scalar least_radius(const Point& middle) const {
         const std::size_t n_neighbours = Dim == 2 ? 5 : 20;
         std::vector<Scalar> distances;
-        for (int node : m_reach) {
+        for (int node : m_free_surface_nodes) {
             distances.push_back((x().col(node) - middle).norm());
         }
         const std::size_t last = std::min(n_neighbours, distances.size() - 1);
@@ -269,9 +269,9 @@ private:
         }
     }
 
-    const Body<Dim, Scalar>* m_body;
+    const Specimen<Dim, Scalar>* m_body;
     std::vector<bool> m_is_held;
-    std::vector<int> m_reach;
+    std::vector<int> m_free_surface_nodes;
     Point m_low;
     Point m_high;
     Scalar m_size = 0;

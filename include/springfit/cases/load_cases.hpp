@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <springfit/motion/clamp_sets.hpp>
-#include <springfit/motion/load_kinds.hpp>
+#include <springfit/cases/clamp_sets.hpp>
+#include <springfit/cases/load_kinds.hpp>
 
 namespace springfit {
 
@@ -66,7 +66,7 @@ struct LoadCaseOptions {
 /// clamps take turns such that every kind comes under every clamp. Throws InvalidArgument where `random_load` and
 /// `clamp_sets` do.
 template <int Dim, std::floating_point Scalar>
-[[nodiscard]] LoadCaseSplit<Dim, Scalar> random_load_cases(const Body<Dim, Scalar>& body,
+[[nodiscard]] LoadCaseSplit<Dim, Scalar> random_load_cases(const Specimen<Dim, Scalar>& body,
                                                            const LoadCaseOptions& options = {}) {
     require(options.training >= 1, "training", "at least one load case", options.training);
     require(options.clamps >= 1, "clamps", "at least one clamp set", options.clamps);
@@ -76,7 +76,7 @@ template <int Dim, std::floating_point Scalar>
     const int clamps = std::min(options.clamps, options.training);
 
     // The body's own clamps, which may move, then nodes at rest; the last is held out.
-    std::vector<Body<Dim, Scalar>> clamped{body};
+    std::vector<Specimen<Dim, Scalar>> clamped{body};
     if (clamps > 1 || options.held_out_clamp > 0 || body.clamps.empty()) {
         ClampSets sets = clamp_sets(body, {.training = clamps, .held_out = options.held_out_clamp > 0});
         if (options.held_out_clamp > 0) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tolerance.hpp"
 
-#include <springfit/motion/noise.hpp>
+#include <springfit/cases/noise.hpp>
 
 using namespace springfit;
 

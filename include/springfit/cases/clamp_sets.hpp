@@ -6,7 +6,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include <springfit/motion/body.hpp>
+#include <springfit/cases/specimen.hpp>
 
 namespace springfit {
 
@@ -87,7 +87,7 @@ inline bool overlap(const std::vector<int>& a, const std::vector<int>& b) {
 template <int Dim, std::floating_point Scalar>
 class ClampPicker {
 public:
-    ClampPicker(const Body<Dim, Scalar>& body, Scalar part) : m_body(&body) {
+    ClampPicker(const Specimen<Dim, Scalar>& body, Scalar part) : m_body(&body) {
         const Vector<Dim, Scalar> low = body.rest_positions.rowwise().minCoeff();
         const Vector<Dim, Scalar> extent = body.rest_positions.rowwise().maxCoeff() - low;
         m_size = extent.norm();
@@ -179,7 +179,7 @@ private:
         return nodes;
     }
 
-    const Body<Dim, Scalar>* m_body;
+    const Specimen<Dim, Scalar>* m_body;
     Scalar m_size = 0;
     std::vector<std::vector<int>> m_sides;
     std::vector<std::vector<int>> m_taken;
@@ -196,7 +196,7 @@ private:
 /// with no other more than half of the nodes that both hold together. The result goes by positions, not by node
 /// numbers. Throws InvalidArgument where the body has not that many. O(nodes) for sides, O(surface^2) for patches.
 template <int Dim, std::floating_point Scalar>
-[[nodiscard]] ClampSets clamp_sets(const Body<Dim, Scalar>& body, const ClampSetOptions& options = {}) {
+[[nodiscard]] ClampSets clamp_sets(const Specimen<Dim, Scalar>& body, const ClampSetOptions& options = {}) {
     validate(body);
     require(options.training >= 1, "training", "at least one clamp set", options.training);
     require(options.part >= 0 && options.part < 1, "part", "a part of the extent in [0, 1)", options.part);

@@ -7,7 +7,7 @@ namespace springfit {
 
 /// What load cases need to know of a body.
 template <int Dim, std::floating_point Scalar>
-struct Body {
+struct Specimen {
     Points<Dim, Scalar> rest_positions; ///< [Dim x n_nodes], m
     Values<Scalar> masses;              ///< [n_nodes], kg
     std::vector<int> surface;           ///< nodes that a hand can reach
@@ -19,7 +19,7 @@ struct Body {
 /// Throws InvalidArgument unless there is a finite position and a positive mass for every node, and surface and clamps
 /// name nodes of the body.
 template <int Dim, std::floating_point Scalar>
-void validate(const Body<Dim, Scalar>& body) {
+void validate(const Specimen<Dim, Scalar>& body) {
     require(body.n_nodes() > 0 && body.rest_positions.allFinite(), "body", "finite rest positions",
             text(body.n_nodes(), " nodes"));
     require(body.masses.size() == body.n_nodes(), "body", "one mass per node", body.masses.size());
