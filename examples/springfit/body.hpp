@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
 
+#include <springfit/calibrate/candidate.hpp>
+#include <springfit/cases/case_recorder.hpp>
+#include <springfit/cases/coarse_cases.hpp>
 #include <springfit/cases/specimen.hpp>
-#include <springfit/closed_form/cauchy_split.hpp>
 #include <springfit/io/motion_file.hpp>
 #include <springfit/mesh/mesh.hpp>
-#include <springfit/network/spring_network.hpp>
+#include <springfit/motion/surface.hpp>
 
 #include "options.hpp"
 
@@ -24,7 +27,7 @@ using AnyMesh = std::variant<springfit::Mesh<2, double, springfit::Tri3>, spring
 
 /// Reads or makes the mesh of a surface, an outline or a mesh file; says on stderr what it did.
 /// Throws FileError or InvalidArgument.
-[[nodiscard]] AnyMesh read_mesh(const FitOptions& options);
+[[nodiscard]] AnyMesh read_mesh(const FitOptions& options, const springfit::ProgressCallback& progress);
 
 /// A finer mesh of the same body, for the reference, and how values pass between its nodes and the network's.
 struct FineMesh {
@@ -35,7 +38,8 @@ struct FineMesh {
 
 /// Makes the mesh of `--reference-nodes` beside that of the network, which `read_mesh` made from the same input.
 /// Throws FileError or InvalidArgument.
-[[nodiscard]] FineMesh read_fine_mesh(const FitOptions& options, const AnyMesh& coarse);
+[[nodiscard]] FineMesh read_fine_mesh(const FitOptions& options, const AnyMesh& coarse,
+                                      const springfit::ProgressCallback& progress);
 
 /// True for the file of a recorded motion.
 [[nodiscard]] bool is_motion_file(const std::string& path);
@@ -47,27 +51,50 @@ template <int Dim>
 /// A body as springs, whatever its cells are.
 template <int Dim>
 struct Discretisation {
-    springfit::SpringNetwork<Dim, double> network; ///< springs, rest lengths and masses; stiffness 0 as yet
-    std::vector<springfit::NamedClosedForm<double>> closed_forms; ///< all that hold for these cells, at least one
-    /// Springs together with cells that hold their volume, of `--volume` on simplices.
-    std::optional<springfit::CauchySplit<double>> cauchy_split;
-    springfit::io::MotionTopology topology; ///< cells and springs, for the motion files
+    springfit::SpringNetwork<Dim, double> network; ///< springs, rest lengths and masses; stiffness 0
+    springfit::io::MotionTopology topology;        ///< cells and springs, for the motion files
     std::string cell_name;
 };
 
 template <int Dim>
 [[nodiscard]] Discretisation<Dim> discretise(const AnyMesh& mesh, const FitOptions& options);
 
-/// A mesh as the load cases see it, without clamps: its surface is what a hand can reach, every node of a sheet.
+/// The network with the values of every closed form that holds for its mesh.
 template <int Dim>
-[[nodiscard]] springfit::Specimen<Dim, double> body_of(const AnyMesh& mesh, const FitOptions& options);
+[[nodiscard]] std::vector<springfit::NamedNetwork<Dim>>
+closed_forms_of(const AnyMesh& mesh, const springfit::SpringNetwork<Dim, double>& network, const FitOptions& options);
+
+/// The body that load cases are recorded of, held where `--clamp` says.
+template <int Dim>
+[[nodiscard]] springfit::Specimen<Dim, double> specimen_of(const AnyMesh& mesh, const FitOptions& options);
+
+/// The boundary of a fine mesh as the network carries it, and the fine nodes that it consists of.
+template <int Dim>
+struct FineSurface {
+    springfit::CarriedSurface<Dim, double> surface;
+    std::vector<int> nodes;
+};
+
+template <int Dim>
+[[nodiscard]] FineSurface<Dim> surface_of(const FineMesh& fine);
+
+/// The finite element model of a mesh for the element and material asked for, and the element's name. Throws
+/// InvalidArgument where they do not fit the mesh.
+template <int Dim>
+struct FemReference {
+    std::unique_ptr<springfit::CaseRecorder<Dim, double>> recorder;
+    std::string element;
+};
+
+template <int Dim>
+[[nodiscard]] FemReference<Dim> make_fem_reference(const AnyMesh& mesh, const FitOptions& options);
 
 /// The sides that `--clamp` names, or y-min.
 [[nodiscard]] std::vector<std::string> sides_to_clamp(const FitOptions& options);
 
-/// The nodes that the `--clamp` options name. Throws InvalidArgument for an unknown side or one that holds no node.
+/// The nodes on the sides that are clamped. Throws InvalidArgument for an unknown side or where none is left to move.
 template <int Dim>
-[[nodiscard]] std::vector<int> clamped_nodes(const std::vector<std::string>& clamps,
-                                             const springfit::Points<Dim, double>& rest_positions);
+[[nodiscard]] std::vector<int> nodes_to_clamp(const std::vector<std::string>& clamps,
+                                              const springfit::Points<Dim, double>& rest_positions);
 
 } // namespace program

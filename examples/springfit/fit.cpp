@@ -3,18 +3,12 @@
 
 #include <cstdio>
 
-#include <springfit/core/version.hpp>
-#include <springfit/io/model_json.hpp>
-#include <springfit/io/motion_file.hpp>
-#include <springfit/io/report_json.hpp>
-#include <springfit/motion/replay.hpp>
 #include <springfit/parallel/tbb.hpp>
-#include <springfit/score/motion_error.hpp>
-#include <springfit/step/stable_step.hpp>
+#include <springfit/score/embedded_error.hpp>
 
-#include "candidates.hpp"
-#include "coarse_from_fine.hpp"
 #include "commands.hpp"
+#include "exact_solver.hpp"
+#include "files.hpp"
 #include "interrupt.hpp"
 #include "terminal.hpp"
 
@@ -61,10 +55,12 @@ void check(const FitOptions& options) {
     if (options.strain) {
         require(*options.strain > 0 && *options.strain < 1, "--strain", "a strain in (0, 1)", *options.strain);
     }
-    require(options.fit_seconds > 0, "--fit-seconds", "a positive time, s", options.fit_seconds);
+    require(!options.fit_seconds || *options.fit_seconds > 0, "--fit-seconds", "a positive time, s",
+            options.fit_seconds.value_or(0));
     if (options.frames) {
         require(*options.frames >= 4, "--frames", "at least 4", *options.frames);
     }
+    (void)exact_solver(options.exact_solver);
     for (const auto& [count, name] : {std::pair{options.training_cases, "--training-cases"},
                                       std::pair{options.held_out_cases, "--held-out-cases"}}) {
         require(!count || *count >= 1, name, "at least one", count.value_or(0));
@@ -94,258 +90,234 @@ void check(const FitOptions& options) {
     }
 }
 
-template <int Dim>
-io::Json material_of(const FitOptions& options) {
+io::Json material_of(const FitOptions& options, int dimension) {
     io::Json material = {{"young", options.young}, {"poisson", options.poisson}, {"density", options.density}};
-    if (options.thickness || Dim == 2) {
+    if (options.thickness || dimension == 2) {
         material["thickness"] = options.thickness.value_or(1);
     }
     return material;
 }
 
-template <int Dim>
-void print_table(const std::vector<Candidate<Dim>>& candidates, std::size_t best) {
-    std::printf("\n%-16s %10s %10s %12s %10s\n", "method", "held-out", "training", "stiffness", "seconds");
-    for (std::size_t c = 0; c < candidates.size(); ++c) {
-        const auto& candidate = candidates[c];
-        std::printf("%-16s %10.4f %10.4f %12.3f %10.2f%s\n", candidate.name.c_str(), candidate.held_out,
-                    candidate.training, candidate.relative_stiffness, candidate.seconds,
-                    c == best ? "   <- returned" : "");
-    }
-    std::printf(
-        "(errors: |x - x_ref| / |x_ref - x_rest| over free nodes, frames and cases, inf where a network does not come "
-        "through a case;\nstiffness: energy in the reference's motion beside the first closed form)\n\n");
-}
-
-/// Writes the motion of the reference and of the network under the first held-out load case, as far as both go, and
-/// where there is a surface that the network carries the same at its points.
-template <int Dim>
-void write_shown_motion(io::OutputGroup& outputs, const std::filesystem::path& folder, const Discretisation<Dim>& body,
-                        const CaseSet<Dim>& held_out, const SpringNetwork<Dim, double>& network,
-                        const std::optional<CoarseFromFine<Dim>>& fine, std::vector<std::string>& warnings) {
-    const auto& reference = held_out.motions.front();
-    const auto fitted = simulate(network, held_out.scenarios.front(), reference.times).motion;
-    if (fitted.n_frames() < reference.n_frames()) {
-        warnings.push_back(text("motion.h5: the network's motion ended after ", fitted.n_frames(), " of ",
-                                reference.n_frames(), " frames"));
-    }
-    const auto write = [&](const char* name, const Motion<Dim, double>& motion, const io::MotionTopology& topology,
-                           const std::vector<Points<Dim, double>>& positions) {
-        if (positions.empty()) {
-            io::write_motion(outputs, folder / name, motion, topology);
-        } else {
-            const auto frames = static_cast<Index>(positions.size());
-            io::write_motion(outputs, folder / name, excerpt(motion, 0, frames), topology, &positions);
-        }
-    };
-    write("motion.h5", reference, body.topology, fitted.positions);
-    if (fine) {
-        const auto& surface = fine->surface();
-        write("surface.h5", fine->shown_at_surface(), io::motion_topology(surface), carry(surface, fitted));
-    } else { // what a run with a finer reference left there is of another network
-        outputs.remove(folder / "surface.h5");
-        outputs.remove(folder / "surface.xdmf");
+/// A given value, or the library's own.
+template <class Value>
+void take(const std::optional<Value>& given, auto& target) {
+    if (given) {
+        target = *given;
     }
 }
 
+CalibrateOptions calibrate_options(const FitOptions& options, const Execution& execution,
+                                   const ProgressCallback& progress) {
+    CalibrateOptions how;
+    how.method = options.method == "auto"            ? Method::automatic
+                 : options.method == "trajectory"    ? Method::trajectory
+                 : options.method == "dominant-term" ? Method::dominant_term
+                 : options.method == "exact"         ? Method::exact
+                                                     : Method::closed_form;
+    how.damping = options.damping == "ratio"    ? DampingRule::ratio
+                  : options.damping == "fitted" ? DampingRule::fitted
+                                                : DampingRule::proportional;
+    take(options.zeta, how.zeta);
+    how.exact_solver = exact_solver(options.exact_solver);
+    take(options.fit_seconds, how.matching_seconds);
+    how.execution = execution;
+    how.progress = progress;
+    return how;
+}
+
+/// The body on its way from the mesh to the files.
 template <int Dim>
-int fit_body(const AnyMesh& mesh, const std::optional<FineMesh>& fine_mesh, std::vector<Motion<Dim, double>> recorded,
-             std::vector<std::string> warnings, const FitOptions& options, io::OutputFolder& folder,
-             io::NamedNumbers stages) {
-    const auto since = [&stages](const Timer& timer, const char* name) { stages.emplace_back(name, timer.seconds()); };
-    const Execution execution = parallel::tbb(options.threads);
-    Discretisation<Dim> body = discretise<Dim>(mesh, options);
-    std::printf("%lld nodes, %lld %s cells, %lld springs\n", static_cast<long long>(body.network.n_nodes()),
-                static_cast<long long>(body.topology.cells.cols()), body.cell_name.c_str(),
-                static_cast<long long>(body.network.n_springs()));
-    std::optional<CoarseFromFine<Dim>> fine;
-    if (fine_mesh) {
-        fine.emplace(*fine_mesh, options, body);
-        std::printf("%lld nodes of the reference\n", static_cast<long long>(fine->body().n_nodes()));
+class Fit {
+public:
+    Fit(const FitOptions& options, const AnyMesh& mesh, const std::optional<FineMesh>& fine_mesh,
+        const ProgressCallback& progress)
+        : m_options(options), m_mesh(mesh), m_fine_mesh(fine_mesh),
+          m_how(calibrate_options(options, parallel::tbb(options.threads), progress)),
+          m_body(discretise<Dim>(mesh, options)) {
+        std::printf("%lld nodes, %lld %s cells, %lld springs\n", static_cast<long long>(m_body.network.n_nodes()),
+                    static_cast<long long>(m_body.topology.cells.cols()), m_body.cell_name.c_str(),
+                    static_cast<long long>(m_body.network.n_springs()));
+        m_source.input = options.input;
+        m_source.material = material_of(options, Dim);
+        m_source.seed = options.seed;
+        m_source.detail = {{"threads", options.threads}, {"damping", options.damping}};
+        if (fine_mesh) {
+            take_fine_mesh();
+        }
+        m_given = closed_forms_of<Dim>(mesh, m_body.network, options);
     }
 
-    const Timer recording;
-    const ReferenceCases<Dim> cases = [&] {
-        if (!recorded.empty()) {
-            return split_recorded<Dim>(std::move(recorded), body, options);
-        }
-        const AnyMesh& reference_mesh = fine_mesh ? fine_mesh->mesh : mesh;
-        auto on_reference = record_cases<Dim>(
-            *make_fem_reference<Dim>(reference_mesh, options), body_of<Dim>(reference_mesh, options), body, options,
-            execution, [&](const std::vector<int>& clamped) { return !fine || fine->holds_network(clamped); });
-        if (fine) {
-            return fine->carried_to_network(std::move(on_reference));
-        }
-        return on_reference;
-    }();
-    since(recording, "reference");
-    warnings.insert(warnings.end(), cases.warnings.begin(), cases.warnings.end());
-
-    const bool cut_short = interrupted();
-    if (cut_short) {
-        watch_for_interrupt(); // what is there is fitted; a further Ctrl-C ends that as well
-    }
-    const Timer fitting;
-    auto candidates = make_candidates<Dim>(body, cases, options, execution);
-    const bool fit_interrupted = interrupted();
-    watch_for_interrupt();
-    since(fitting, "fit");
-    const Timer scoring;
-    score<Dim>(candidates, cases, execution);
-
-    const bool choose = options.method == "auto" || options.method == "closed-form";
-    std::size_t best = choose ? 0 : candidates.size() - 1; // a method asked for by name comes last
-    if (choose) {
-        for (std::size_t c = 0; c < candidates.size(); ++c) {
-            if (candidates[c].held_out < candidates[best].held_out) {
-                best = c;
+    /// Motions that another program recorded.
+    [[nodiscard]] RecordedCases<Dim, double> recorded(std::vector<Motion<Dim, double>> motions,
+                                                      std::vector<Warning> warnings) {
+        for (auto& motion : motions) {
+            require(motion.n_nodes() == m_body.network.n_nodes(), text("reference ", motion.name),
+                    text(m_body.network.n_nodes(), " nodes, as in the mesh"), motion.n_nodes());
+            if (!m_options.clamps.empty()) {
+                motion.clamped = nodes_to_clamp<Dim>(m_options.clamps, m_body.network.rest_positions);
             }
         }
-    }
-    for (const auto& candidate : candidates) {
-        if (candidate.fit && candidate.relative_stiffness < 0.9) {
-            warnings.push_back(text(candidate.name, " came out softer than the closed form (",
-                                    candidate.relative_stiffness,
-                                    " of its stiffness): accelerations alone lose stiffness where springs cannot "
-                                    "represent the material"));
-        }
-        if (candidate.fit && !candidate.fit->not_identified.empty()) {
-            warnings.push_back(text(candidate.name, ": ", candidate.fit->not_identified.size(),
-                                    " values that no motion excites kept their prior"));
-        }
-        if (candidate.n_clamped > 0) {
-            warnings.push_back(
-                text(candidate.name, ": ", candidate.n_clamped, " springs would be negative and were set to 0"));
-        }
-    }
-    const Candidate<Dim>& chosen = candidates[best];
-    io::Json at_reference_nodes;
-    if (fine) {
-        at_reference_nodes = fine->errors_at_fine_nodes(chosen.network, cases.held_out, execution);
-    }
-    const bool score_interrupted = interrupted();
-    since(scoring, "score");
-    if (!cut_short && !fit_interrupted && !score_interrupted && !(chosen.held_out < 0.25)) {
-        warnings.push_back(text("the returned network moves unlike the reference (held-out error ", chosen.held_out,
-                                "); cells that hold their volume (--volume), smaller motions (--strain, --deformation) "
-                                "or more --nodes may help"));
-    }
-    print_table<Dim>(candidates, best);
-    const io::NamedNumbers parts = held_out_parts<Dim>(chosen, cases.held_out);
-    for (const auto& [part, error] : parts) {
-        std::printf("%s, held out: %-28s %.4f\n", chosen.name.c_str(), part.c_str(), error);
-    }
-    std::printf("\n");
-    if (fine) {
-        std::printf("carried by the network, the %lld nodes of the reference have a held-out error of %.4f, of which "
-                    "carrying alone makes %.4f\n\n",
-                    static_cast<long long>(fine->body().n_nodes()), at_reference_nodes["error"].template get<double>(),
-                    at_reference_nodes["error_of_carrying"].template get<double>());
-    }
-    for (const std::string& warning : warnings) {
-        std::fprintf(stderr, "warning: %s\n", warning.c_str());
+        const bool one = motions.size() == 1;
+        auto cases = split_motions(std::move(motions));
+        cases.warnings = std::move(warnings);
+        m_source.reference = {{"kind", "recorded"}, {"split", one ? "time: first two thirds, last third" : "motions"}};
+        return cases;
     }
 
-    io::Model<Dim, double> model;
-    model.network = chosen.network;
-    if (chosen.trajectory) {
-        model.data_share = chosen.data_share;
-    }
-    model.fixed = cases.held_out.motions.front().clamped;
-    if (fine) {
-        model.surface = fine->surface();
-    }
-    model.stable_time_step = stable_step(chosen.network, model.fixed);
-    model.provenance = {
-        {"springfit", SPRINGFIT_VERSION_STRING}, {"method", chosen.name}, {"input", options.input},
-        {"material", material_of<Dim>(options)}, {"seed", options.seed},  {"reference", cases.description}};
-
-    io::Report report;
-    const bool early = cut_short || fit_interrupted || score_interrupted;
-    report.status = early               ? Status::interrupted
-                    : chosen.fit        ? chosen.fit->status
-                    : chosen.trajectory ? chosen.trajectory->status
-                                        : Status::converged;
-    report.method = chosen.name;
-    report.nodes = body.network.n_nodes();
-    report.springs = body.network.n_springs();
-    report.held_out.error = chosen.held_out;
-    report.training.error = chosen.training;
-    io::Json fits = io::Json::object();
-    for (const auto& candidate : candidates) {
-        report.held_out.baselines.emplace_back(candidate.name, candidate.held_out);
-        report.training.baselines.emplace_back(candidate.name, candidate.training);
-        fits[candidate.name] = candidate.fit          ? describe(*candidate.fit)
-                               : candidate.trajectory ? describe(*candidate.trajectory)
-                                                      : io::Json::object();
-        fits[candidate.name]["relative_stiffness"] = candidate.relative_stiffness;
-        fits[candidate.name]["seconds"] = candidate.seconds;
-        if (!candidate.caveat.empty()) {
-            fits[candidate.name]["caveat"] = candidate.caveat;
+    /// Motions and equilibria of the finite element model.
+    [[nodiscard]] RecordedCases<Dim, double> simulated() {
+        RecordCasesOptions<Dim, double> record;
+        take(m_options.training_cases, record.training_motions);
+        take(m_options.held_out_cases, record.held_out_motions);
+        take(m_options.frames, record.frames);
+        take(m_options.deformation, record.deformation);
+        take(m_options.static_cases, record.training_equilibria);
+        take(m_options.strain, record.strain);
+        record.damping_ratio = m_options.damping_ratio;
+        record.stiffness_damping = light_damping(m_given.front().network);
+        record.seed = m_options.seed;
+        if (!matches_motion(m_how.method)) {
+            record.training_equilibria = 0; // nothing would learn from them
         }
-    }
-    report.detail = {{"fits", fits},
-                     {"reference", cases.description},
-                     {"seed", options.seed},
-                     {"threads", options.threads},
-                     {"damping", options.damping},
-                     {"held_out_parts", io::Json::object()}};
-    for (const auto& [part, error] : parts) {
-        report.detail["held_out_parts"][part] = error;
-    }
-    if (fine) {
-        report.detail["reference_nodes"] = at_reference_nodes;
-    }
-
-    io::OutputGroup outputs;
-    const Timer writing;
-    write_shown_motion<Dim>(outputs, folder.path(), body, cases.held_out, chosen.network, fine, warnings);
-    report.warnings = warnings;
-    io::write_model(outputs, folder.path() / "model.json", model);
-    since(writing, "write");
-    for (const auto& stage : stages) {
-        report.seconds += stage.second;
-    }
-    report.stage_seconds = stages;
-    io::write_report(outputs, folder.path() / "report.json", report);
-    outputs.commit();
-    std::printf("wrote model.json, report.json, motion.h5%s and the .xdmf beside to %s\n", fine ? ", surface.h5" : "",
-                folder.path().string().c_str());
-    return early ? exit_interrupted : 0;
-}
-
-/// A recorded motion, with what the report has to say of it.
-template <int Dim>
-io::RecordedMotion<Dim, double> read_recorded(const std::string& path, std::vector<std::string>& warnings) {
-    auto recorded = io::read_motion<Dim, double>(path);
-    for (const std::string& column : recorded.differenced) {
-        warnings.push_back(path + ": " + column + " is not in the file and was differenced");
-    }
-    if (!recorded.forces_recorded) {
-        warnings.push_back(path + ": external forces are not in the file and were taken as zero");
-    }
-    if (!recorded.clamped_recorded) {
-        // Nodes that never leave their place are taken as held.
-        auto& motion = recorded.motion;
-        for (Index i = 0; i < motion.n_nodes(); ++i) {
-            const bool still = std::all_of(motion.positions.begin(), motion.positions.end(), [&](const auto& frame) {
-                return (frame.col(i) - motion.rest_positions.col(i)).isZero(0);
-            });
-            if (still) {
-                motion.clamped.push_back(static_cast<int>(i));
+        if (m_fine) {
+            record.holds = [this](const std::vector<int>& clamped) { return holds_network(clamped); };
+        }
+        record.execution = m_how.execution;
+        record.progress = m_how.progress;
+        const AnyMesh& mesh = m_fine_mesh ? m_fine_mesh->mesh : m_mesh;
+        const auto reference = make_fem_reference<Dim>(mesh, m_options);
+        auto cases = [&] {
+            try {
+                return record_cases<Dim, double>(*reference.recorder, specimen_of<Dim>(mesh, m_options), record);
+            } catch (const InvalidArgument& error) {
+                if (error.argument() == "clamps") {
+                    throw InvalidArgument("--clamp",
+                                          "sides that keep the body from moving as a whole: a deeper one (y-min:0.1; "
+                                          "y-min alone, without "
+                                          "the option, is 0.05 deep) or a finer mesh (--nodes) has more nodes",
+                                          "one that still can");
+                }
+                throw;
             }
+        }();
+        m_source.reference = {{"kind", "fem"},
+                              {"element", reference.element},
+                              {"material", m_options.material.value_or(default_material)},
+                              {"deformation", record.deformation},
+                              {"clamps", sides_to_clamp(m_options)}};
+        if (m_fine) {
+            m_source.reference["nodes"] = m_fine->nodes.rest_positions.cols();
+            const auto& rest = m_body.network.rest_positions;
+            cases.training = at_network(cases.training, m_fine->nodes, rest);
+            m_fine->held_out = std::move(cases.held_out);
+            cases.held_out = at_network(m_fine->held_out, m_fine->nodes, rest);
         }
-        warnings.push_back(text(path, ": clamped nodes are not in the file; the ", motion.clamped.size(),
-                                " nodes that never move were taken as clamped"));
+        return cases;
     }
-    return recorded;
-}
+
+    /// Fits and judges; the seconds that went before are those of the report's first stages.
+    int finish(RecordedCases<Dim, double> cases, io::OutputFolder& folder, io::NamedNumbers seconds) {
+        if (cases.interrupted && (cases.training.empty() || cases.held_out.empty())) {
+            throw Interrupted();
+        }
+        auto calibration = calibrate(m_given, std::move(cases), m_how);
+        const Stopwatch at_fine;
+        if (m_fine) {
+            judge_fine_nodes(calibration);
+            calibration.seconds.back().second += at_fine.seconds();
+        }
+        print_table(calibration);
+        if (m_fine) {
+            const auto& judged = m_source.detail["reference_nodes"];
+            std::printf(
+                "carried by the network, the %lld nodes of the reference have a held-out error of %.4f, of which "
+                "carrying alone makes %.4f\n\n",
+                static_cast<long long>(m_fine->nodes.rest_positions.cols()), judged["error"].template get<double>(),
+                judged["error_of_carrying"].template get<double>());
+        }
+        for (const Warning& warning : calibration.warnings) {
+            std::fprintf(stderr, "warning: %s\n", to_string(warning).c_str());
+        }
+        write(calibration, folder, std::move(seconds));
+        return calibration.status == Status::interrupted ? exit_interrupted : 0;
+    }
+
+private:
+    [[nodiscard]] bool holds_network(const std::vector<int>& clamped) const {
+        return holds_rigidly(m_body.network.rest_positions, m_fine->nodes.clamped_at_network(clamped));
+    }
+
+    void take_fine_mesh() {
+        const auto specimen = specimen_of<Dim>(m_fine_mesh->mesh, m_options);
+        m_fine = FineSide<Dim>{{specimen.rest_positions, m_fine_mesh->at_network, m_fine_mesh->at_fine},
+                               surface_of<Dim>(*m_fine_mesh),
+                               {}};
+        std::printf("%lld nodes of the reference\n", static_cast<long long>(specimen.n_nodes()));
+        try {
+            m_body.network.mass = restrict_masses(m_fine->nodes.at_fine, specimen.masses);
+        } catch (const InvalidArgument&) {
+            throw InvalidArgument("--reference-nodes",
+                                  "a mesh so fine that every node of the network takes a share of its mass",
+                                  text(specimen.n_nodes(), " nodes beside ", m_body.network.n_nodes()));
+        }
+        require(holds_network(specimen.clamps.front().nodes), "--clamp",
+                "sides so deep (y-min:0.1) that they hold the network as they hold the reference",
+                "too few of its nodes within");
+    }
+
+    void judge_fine_nodes(Calibration<Dim>& calibration) {
+        const auto judged = embedded_error(calibration.best().network, calibration.cases.held_out, m_fine->held_out,
+                                           m_fine->nodes, m_how.execution, m_how.progress);
+        if (interrupted()) {
+            calibration.status = Status::interrupted;
+        }
+        io::Json cases = io::Json::object();
+        for (std::size_t c = 0; c < m_fine->held_out.size(); ++c) {
+            cases[m_fine->held_out.motions[c].name] = judged.by_network.case_errors[c];
+        }
+        m_source.detail["reference_nodes"] = {{"nodes", m_fine->nodes.rest_positions.cols()},
+                                              {"error", judged.by_network.error},
+                                              {"error_of_carrying", judged.by_reference.error},
+                                              {"cases", cases}};
+    }
+
+    void write(const Calibration<Dim>& calibration, io::OutputFolder& folder, io::NamedNumbers seconds) {
+        const Stopwatch writing;
+        auto model = io::model_of(calibration, m_source);
+        if (m_fine) {
+            model.surface = m_fine->surface.surface;
+        }
+        auto report = io::report_of(calibration, m_source);
+        io::OutputGroup outputs;
+        write_shown_motion<Dim>(outputs, folder.path(), m_body.topology, calibration, m_fine, report.warnings);
+        io::write_model(outputs, folder.path() / "model.json", model);
+        seconds.insert(seconds.end(), calibration.seconds.begin(), calibration.seconds.end());
+        seconds.emplace_back("write", writing.seconds());
+        for (const auto& stage : seconds) {
+            report.seconds += stage.second;
+        }
+        report.stage_seconds = std::move(seconds);
+        io::write_report(outputs, folder.path() / "report.json", report);
+        outputs.commit();
+        std::printf("wrote model.json, report.json, motion.h5%s and the .xdmf beside to %s\n",
+                    m_fine ? ", surface.h5" : "", folder.path().string().c_str());
+    }
+
+    const FitOptions& m_options;
+    const AnyMesh& m_mesh;
+    const std::optional<FineMesh>& m_fine_mesh;
+    CalibrateOptions m_how;
+    Discretisation<Dim> m_body;
+    std::vector<NamedNetwork<Dim>> m_given;
+    std::optional<FineSide<Dim>> m_fine;
+    io::CalibrationSource m_source;
+};
 
 /// Everything from the body on, for one dimension; `mesh` is empty where INPUT is a recorded motion.
 template <int Dim>
 int fit_dimension(std::optional<AnyMesh> mesh, const std::optional<FineMesh>& fine_mesh, const FitOptions& options,
-                  io::OutputFolder& folder, io::NamedNumbers stages) {
-    std::vector<std::string> warnings;
+                  io::OutputFolder& folder, io::NamedNumbers seconds, const ProgressCallback& progress) {
+    std::vector<Warning> warnings;
     std::vector<Motion<Dim, double>> motions;
     if (!mesh) {
         auto input = read_recorded<Dim>(options.input, warnings);
@@ -356,7 +328,11 @@ int fit_dimension(std::optional<AnyMesh> mesh, const std::optional<FineMesh>& fi
         require(io::read_motion_dimension(path) == Dim, "--reference", text("a motion of dimension ", Dim), path);
         motions.push_back(read_recorded<Dim>(path, warnings).motion);
     }
-    return fit_body<Dim>(*mesh, fine_mesh, std::move(motions), std::move(warnings), options, folder, std::move(stages));
+    Fit<Dim> fit(options, *mesh, fine_mesh, progress);
+    const Stopwatch recording;
+    auto cases = motions.empty() ? fit.simulated() : fit.recorded(std::move(motions), std::move(warnings));
+    seconds.emplace_back("reference", recording.seconds());
+    return fit.finish(std::move(cases), folder, std::move(seconds));
 }
 
 } // namespace
@@ -364,26 +340,28 @@ int fit_dimension(std::optional<AnyMesh> mesh, const std::optional<FineMesh>& fi
 int run_fit(const FitOptions& options) {
     check(options);
     io::OutputFolder folder(options.out);
-    io::NamedNumbers stages;
+    Terminal terminal;
+    io::NamedNumbers seconds;
     std::optional<AnyMesh> mesh;
     std::optional<FineMesh> fine_mesh;
     int dimension = 0;
     if (is_motion_file(options.input)) {
         dimension = io::read_motion_dimension(options.input);
     } else {
-        const Timer timer;
-        mesh = read_mesh(options);
+        const Stopwatch meshing;
+        mesh = read_mesh(options, terminal.callback());
         dimension = dimension_of(*mesh);
         if (options.reference_nodes && !interrupted()) {
-            fine_mesh = read_fine_mesh(options, *mesh);
+            fine_mesh = read_fine_mesh(options, *mesh, terminal.callback());
         }
-        stages.emplace_back("mesh", timer.seconds());
+        seconds.emplace_back("mesh", meshing.seconds());
     }
     if (interrupted()) {
         throw Interrupted();
     }
-    return dimension == 2 ? fit_dimension<2>(std::move(mesh), fine_mesh, options, folder, std::move(stages))
-                          : fit_dimension<3>(std::move(mesh), fine_mesh, options, folder, std::move(stages));
+    return dimension == 2
+               ? fit_dimension<2>(std::move(mesh), fine_mesh, options, folder, std::move(seconds), terminal.callback())
+               : fit_dimension<3>(std::move(mesh), fine_mesh, options, folder, std::move(seconds), terminal.callback());
 }
 
 } // namespace program

@@ -6,11 +6,11 @@
 #include <springfit/cgal/interpolation.hpp>
 #include <springfit/cgal/tetrahedralize.hpp>
 #include <springfit/cgal/triangulate.hpp>
+#include <springfit/core/stage.hpp>
 #include <springfit/io/mesh_file.hpp>
 #include <springfit/mesh/corner_mesh.hpp>
 
 #include "body.hpp"
-#include "terminal.hpp"
 
 namespace program {
 
@@ -67,24 +67,24 @@ int dimension_of(const AnyMesh& mesh) {
     return std::visit([](const auto& m) { return static_cast<int>(m.nodes.rows()); }, mesh);
 }
 
-AnyMesh read_mesh(const FitOptions& options) {
+AnyMesh read_mesh(const FitOptions& options, const ProgressCallback& progress) {
     const std::string kind = extension(options.input);
     if (!std::filesystem::exists(options.input)) {
         throw FileError(options.input, "no such file");
     }
     if (is_one_of(kind, {".off", ".obj", ".stl", ".ply"})) {
-        Stage stage("mesh");
+        Stage stage(progress, "mesh");
         cgal::TetrahedralizeOptions how;
         how.cell_size = options.cell_size.value_or(0);
         how.n_nodes = options.cell_size ? 0 : options.nodes.value_or(default_nodes);
         how.seed = options.seed;
         how.repair.max_hole_edges = options.fill_holes;
-        how.progress = stage.callback();
+        how.progress = stage.part();
         return cgal::tetrahedralize<double>(std::filesystem::path(options.input), how);
     }
     if (is_one_of(kind, {".poly", ".wkt"})) {
         require(options.fill_holes == 0, "--fill-holes", "a surface as INPUT", options.input);
-        Stage stage("mesh");
+        const Stage stage(progress, "mesh");
         cgal::TriangulateOptions how;
         how.cell_size = options.cell_size.value_or(0);
         how.n_nodes = options.cell_size ? 0 : options.nodes.value_or(default_nodes);
@@ -96,7 +96,7 @@ AnyMesh read_mesh(const FitOptions& options) {
     return from_mesh_file(io::read_mesh(options.input));
 }
 
-FineMesh read_fine_mesh(const FitOptions& options, const AnyMesh& coarse) {
+FineMesh read_fine_mesh(const FitOptions& options, const AnyMesh& coarse, const ProgressCallback& progress) {
     const int wanted = options.reference_nodes.value();
     auto finer = options;
     finer.nodes = wanted;
@@ -106,7 +106,7 @@ FineMesh read_fine_mesh(const FitOptions& options, const AnyMesh& coarse) {
             require(wanted > network.n_nodes(), "--reference-nodes",
                     text("more than the ", network.n_nodes(), " nodes of the network"), wanted);
             if constexpr (SimplexCell<Cell> && Cell::dimension == Dim) { // what surfaces and outlines are cut into
-                FineMesh fine{.mesh = read_mesh(finer), .at_network = {}, .at_fine = {}};
+                FineMesh fine{.mesh = read_mesh(finer, progress), .at_network = {}, .at_fine = {}};
                 const auto& mesh = std::get<Mesh<Dim, double, Cell>>(fine.mesh);
                 fine.at_network = cgal::interpolation(mesh, network.nodes);
                 fine.at_fine = cgal::interpolation(network, mesh.nodes);

@@ -76,7 +76,7 @@ void declare_fit(CLI::App& app, program::FitOptions& options) {
     add_optional(app, "--training-cases", options.training_cases, "load cases the fit sees (default 6)")->group(cases);
     add_optional(app, "--held-out-cases", options.held_out_cases, "load cases it never sees (default 3)")->group(cases);
     add_optional(app, "--static-cases", options.static_cases,
-                 "equilibria, under three clamps, that matching of motion learns from (default 24)")
+                 "equilibria, under three clamps, that matching of motion learns from (default 60)")
         ->group(cases);
     add_optional(app, "--strain", options.strain,
                  "strain that the loads of every second one, and of those that judge, aim at (default 0.05)")
@@ -92,6 +92,11 @@ void declare_fit(CLI::App& app, program::FitOptions& options) {
         ->check(CLI::IsMember({"auto", "trajectory", "dominant-term", "exact", "closed-form"}))
         ->capture_default_str()
         ->group(fit);
+    app.add_option("--exact-solver", options.exact_solver,
+                   "of the exact fit: native (an active set) or ipopt (an interior point; where built with Ipopt)")
+        ->check(CLI::IsMember({"native", "ipopt"}))
+        ->capture_default_str()
+        ->group(fit);
     app.add_option("--damping", options.damping,
                    "proportional to stiffness, a ratio of critical (2 zeta sqrt(k (m_i + m_j))), or fitted")
         ->check(CLI::IsMember({"proportional", "ratio", "fitted"}))
@@ -102,9 +107,7 @@ void declare_fit(CLI::App& app, program::FitOptions& options) {
         ->group(fit);
     app.add_flag("--volume", options.volume, "cells that hold their volume, too; for nearly incompressible materials")
         ->group(fit);
-    app.add_option("--fit-seconds", options.fit_seconds, "time for matching motion, s")
-        ->capture_default_str()
-        ->group(fit);
+    add_optional(app, "--fit-seconds", options.fit_seconds, "time for matching motion, s (default 300)")->group(fit);
     app.add_option("--threads", options.threads, "threads, 0 for all")->capture_default_str()->group(fit);
 }
 

@@ -9,6 +9,7 @@
 namespace program {
 
 constexpr int default_nodes = 1000; ///< of a body that is meshed
+constexpr const char* default_material = "neo-hookean";
 
 /// What `springfit fit` was asked for. Values left out are chosen from the body.
 struct FitOptions {
@@ -31,11 +32,12 @@ struct FitOptions {
     std::vector<std::string> clamps;
 
     std::string method = "auto";
+    std::string exact_solver = "native";
     std::string damping = "proportional";
     std::optional<double> zeta; ///< of `--damping ratio`
     bool second_ring = false;
-    bool volume = false;      ///< cells that hold their volume, too
-    double fit_seconds = 300; ///< for matching motion
+    bool volume = false;               ///< cells that hold their volume, too
+    std::optional<double> fit_seconds; ///< for matching motion
 
     std::optional<int> training_cases;
     std::optional<int> held_out_cases;

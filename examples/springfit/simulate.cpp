@@ -40,8 +40,8 @@ int simulate_model(const io::Model<Dim, double>& model, const SimulateOptions& o
     if (options.time_step) {
         how.steps_per_frame = static_cast<int>(std::ceil(how.dt / *options.time_step * (1 - 1e-12)));
     }
-    Stage stage("simulate");
-    how.progress = stage.callback();
+    Terminal terminal;
+    how.progress = terminal.callback();
     const auto recording = [&] {
         if (options.integrator == "implicit") {
             ImplicitEuler<Dim, double> stepper(model.network);

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "terminal.hpp"
 
-#include <algorithm>
 #include <cstdio>
-#include <numeric>
-#include <utility>
 
 #include <unistd.h>
 
@@ -12,54 +9,61 @@
 
 namespace program {
 
-using Clock = std::chrono::steady_clock;
+Terminal::Terminal() : m_is_terminal(isatty(STDERR_FILENO) == 1) {}
 
-Stage::Stage(std::string name)
-    : m_name(std::move(name)), m_start(Clock::now()), m_shown(m_start), m_terminal(isatty(STDERR_FILENO) == 1) {
-    if (m_terminal) {
-        show();
-    }
+Terminal::~Terminal() {
+    end();
 }
 
-Stage::~Stage() {
-    if (m_terminal) {
-        std::fprintf(stderr, "\r\033[K");
-    }
-    std::fprintf(stderr, "%-28s %7.1f s%s\n", m_name.c_str(), seconds(), interrupted() ? "  (interrupted)" : "");
-}
-
-double Stage::seconds() const {
-    return std::chrono::duration<double>(Clock::now() - m_start).count();
-}
-
-springfit::ProgressCallback Stage::callback(std::size_t part, std::size_t parts) {
-    m_done.resize(parts, 0);
-    return [this, part](const springfit::Progress& progress) {
-        const std::scoped_lock lock(m_mutex);
-        m_done[part] = std::max(m_done[part], std::clamp(progress.fraction, 0.0, 1.0));
-        const auto now = Clock::now();
-        const double since = std::chrono::duration<double>(now - m_shown).count();
-        if (since > (m_terminal ? 0.1 : 10.0)) {
-            show();
-            m_shown = now;
+springfit::ProgressCallback Terminal::callback() {
+    return [this](const springfit::Progress& progress) {
+        if (progress.stage != m_stage) {
+            end();
+            begin(progress.stage);
+        } else if (m_shown.seconds() > (m_is_terminal ? 0.1 : 10.0)) {
+            show(progress.fraction);
+            m_shown = {};
         }
         return !interrupted();
     };
 }
 
-void Stage::show() {
-    const double done = m_done.empty() ? 0 : std::accumulate(m_done.begin(), m_done.end(), 0.0) / double(m_done.size());
-    const double left = done > 0 ? seconds() * (1 - done) / done : 0;
-    if (!m_terminal) {
-        std::fprintf(stderr, "%-28s %3.0f %%, %.0f s left\n", m_name.c_str(), 100 * done, left);
+void Terminal::begin(std::string_view stage) {
+    if (interrupted()) {
+        watch_for_interrupt(); // it ended the stage before; a further Ctrl-C ends this one
+    }
+    m_stage = stage;
+    m_since = {};
+    m_shown = {};
+    if (m_is_terminal) {
+        show(0);
+    }
+}
+
+void Terminal::end() {
+    if (m_stage.empty()) {
+        return;
+    }
+    if (m_is_terminal) {
+        std::fprintf(stderr, "\r\033[K");
+    }
+    std::fprintf(stderr, "%-28s %7.1f s%s\n", m_stage.c_str(), m_since.seconds(),
+                 interrupted() ? "  (interrupted)" : "");
+    m_stage.clear();
+}
+
+void Terminal::show(double fraction) const {
+    const double left = fraction > 0 ? m_since.seconds() * (1 - fraction) / fraction : 0;
+    if (!m_is_terminal) {
+        std::fprintf(stderr, "%-28s %3.0f %%, %.0f s left\n", m_stage.c_str(), 100 * fraction, left);
         return;
     }
     constexpr int width = 30;
-    const int full = static_cast<int>(done * width);
+    const int full = static_cast<int>(fraction * width);
     std::string bar(static_cast<std::size_t>(full), '#');
     bar.resize(width, '.');
-    std::fprintf(stderr, "\r\033[K%-28s [%s] %3.0f %%", m_name.c_str(), bar.c_str(), 100 * done);
-    if (done > 0) {
+    std::fprintf(stderr, "\r\033[K%-28s [%s] %3.0f %%", m_stage.c_str(), bar.c_str(), 100 * fraction);
+    if (fraction > 0) {
         std::fprintf(stderr, "  %.0f s left", left);
     }
     std::fflush(stderr);

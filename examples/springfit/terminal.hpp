@@ -2,49 +2,35 @@
 #pragma once
 
 #include <chrono>
-#include <mutex>
 #include <string>
-#include <vector>
 
 #include <springfit/core/progress.hpp>
+#include <springfit/core/stopwatch.hpp>
 
 namespace program {
 
-/// Seconds since it was made.
-class Timer {
+/// Shows one stage after another on the terminal: a bar with the time left, or plain lines where the output is not a
+/// terminal. Its callback also carries the user's Ctrl-C to the library: it ends the running stage, and the next one
+/// goes on with what is there.
+class Terminal {
 public:
-    [[nodiscard]] double seconds() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - m_start).count();
-    }
+    Terminal();
+    ~Terminal();
+    Terminal(const Terminal&) = delete;
+    Terminal& operator=(const Terminal&) = delete;
+
+    /// For what the library computes, one stage at a time.
+    [[nodiscard]] springfit::ProgressCallback callback();
 
 private:
-    std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
-};
+    void begin(std::string_view stage);
+    void end();
+    void show(double fraction) const;
 
-/// Shows one long stage on the terminal: a bar with the time left, or plain lines where the output is not a terminal.
-/// Its callback also carries the user's Ctrl-C to the library.
-class Stage {
-public:
-    explicit Stage(std::string name);
-    ~Stage();
-    Stage(const Stage&) = delete;
-    Stage& operator=(const Stage&) = delete;
-
-    /// Progress of part `part` of `parts` equal parts of this stage; the parts may run at the same time.
-    [[nodiscard]] springfit::ProgressCallback callback(std::size_t part = 0, std::size_t parts = 1);
-
-    /// Seconds since the stage began.
-    [[nodiscard]] double seconds() const;
-
-private:
-    void show();
-
-    std::string m_name;
-    std::chrono::steady_clock::time_point m_start;
-    std::chrono::steady_clock::time_point m_shown;
-    std::mutex m_mutex;
-    std::vector<double> m_done; ///< of each part
-    bool m_terminal;
+    std::string m_stage; ///< empty: none runs
+    springfit::Stopwatch m_since;
+    springfit::Stopwatch m_shown;
+    bool m_is_terminal;
 };
 
 } // namespace program

@@ -16,11 +16,14 @@ struct Side {
     bool at_max = false;
 };
 
+/// Depth of a side where none is given, as a part of the extent.
+inline constexpr double side_depth = 0.05;
+
 /// The nodes at a side of the bounding box, as deep as `part` of the box's extent along the axis, ascending. `part` in
 /// [0, 1); 0 takes the outermost nodes alone. Throws InvalidArgument for an axis that is not there. O(nodes).
 template <int Dim, std::floating_point Scalar>
 [[nodiscard]] std::vector<int> side_nodes(const Points<Dim, Scalar>& rest_positions, const Side& side,
-                                          std::type_identity_t<Scalar> part = Scalar(0.05)) {
+                                          std::type_identity_t<Scalar> part = Scalar(side_depth)) {
     require(side.axis >= 0 && side.axis < Dim, "side", text("an axis in [0, ", Dim, ")"), side.axis);
     require(part >= 0 && part < 1, "part", "a part of the extent in [0, 1)", part);
     std::vector<int> nodes;
@@ -58,9 +61,9 @@ template <int Dim, std::floating_point Scalar>
 }
 
 struct ClampSetOptions {
-    int training = 3;     ///< sets to train under, the body's own first, >= 1
-    bool held_out = true; ///< one more set, that training never sees
-    double part = 0.05;   ///< depth of a side, part of the extent, in [0, 1)
+    int training = 3;         ///< sets to train under, the body's own first, >= 1
+    bool held_out = true;     ///< one more set, that training never sees
+    double part = side_depth; ///< depth of a side, part of the extent, in [0, 1)
 };
 
 /// Node sets to clamp a body at, each on its own.

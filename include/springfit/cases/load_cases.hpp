@@ -2,7 +2,7 @@
 #pragma once
 
 #include <springfit/cases/clamp_sets.hpp>
-#include <springfit/cases/load_kinds.hpp>
+#include <springfit/cases/load_case.hpp>
 
 namespace springfit {
 
@@ -43,16 +43,6 @@ void set_amplitude(Scenario<Dim, Scalar>& scenario, const Amplitude<Scalar>& amp
     }
 }
 
-/// Random load cases, split into those that a fit learns from and those that judge it in three ways. Every scenario
-/// carries its own clamps.
-template <int Dim, std::floating_point Scalar>
-struct LoadCaseSplit {
-    std::vector<Scenario<Dim, Scalar>> training;       ///< `training_kinds` under each of the training clamps
-    std::vector<Scenario<Dim, Scalar>> held_out_loads; ///< the same kinds and clamps, other loads
-    std::vector<Scenario<Dim, Scalar>> held_out_kinds; ///< kinds that training never shows, the same clamps
-    std::vector<Scenario<Dim, Scalar>> held_out_clamp; ///< the training's kinds under a clamp that it never shows
-};
-
 struct LoadCaseOptions {
     int training = 18;      ///< cases under all clamps together, >= 1
     int clamps = 3;         ///< clamp sets to train under, the body's own first, >= 1
@@ -62,12 +52,12 @@ struct LoadCaseOptions {
     unsigned seed = 1;      ///< fixes every case
 };
 
-/// The load cases of a split, none scaled yet and all constant in time (`scale_to_strain`, `set_amplitude`). Kinds and
-/// clamps take turns such that every kind comes under every clamp. Throws InvalidArgument where `random_load` and
-/// `clamp_sets` do.
+/// Random load cases, to learn from and to judge by in three ways (`CaseRole`); none is scaled yet and all are constant
+/// in time (`scale_to_strain`, `set_amplitude`). Every scenario carries its own clamps. Kinds and clamps take turns
+/// such that every kind comes under every clamp. Throws InvalidArgument where `random_load` and `clamp_sets` do.
 template <int Dim, std::floating_point Scalar>
-[[nodiscard]] LoadCaseSplit<Dim, Scalar> random_load_cases(const Specimen<Dim, Scalar>& body,
-                                                           const LoadCaseOptions& options = {}) {
+[[nodiscard]] std::vector<LoadCase<Dim, Scalar>> random_load_cases(const Specimen<Dim, Scalar>& body,
+                                                                   const LoadCaseOptions& options = {}) {
     require(options.training >= 1, "training", "at least one load case", options.training);
     require(options.clamps >= 1, "clamps", "at least one clamp set", options.clamps);
     require(options.held_out_loads >= 0, "held_out_loads", "a number not below 0", options.held_out_loads);
@@ -92,28 +82,31 @@ template <int Dim, std::floating_point Scalar>
     }
 
     unsigned case_number = 0;
-    const auto add = [&](std::vector<Scenario<Dim, Scalar>>& cases, LoadKind kind, int clamp) {
+    std::vector<LoadCase<Dim, Scalar>> cases;
+    const auto add = [&](CaseRole role, LoadKind kind, int clamp) {
         // Different seeds give different cases; the factor is odd, so no two cases of one seed are alike.
         const unsigned seed = 2654435761u * options.seed + 40503u * ++case_number;
-        cases.push_back(random_load(kind, clamped[static_cast<std::size_t>(clamp)], seed));
-        cases.back().name = text(to_string(kind), " ", case_number, ", clamp ", clamp + 1);
+        cases.push_back({.scenario = random_load(kind, clamped[static_cast<std::size_t>(clamp)], seed),
+                         .kind = kind,
+                         .clamp_set = clamp,
+                         .role = role});
+        cases.back().scenario.name = text(to_string(kind), " ", case_number, ", clamp ", clamp + 1);
     };
     const auto kind_of = [](const auto& kinds, int c) { return kinds[static_cast<std::size_t>(c) % kinds.size()]; };
     constexpr int n_held_out = static_cast<int>(held_out_kinds.size());
-    LoadCaseSplit<Dim, Scalar> split;
     for (int c = 0; c < options.training; ++c) {
-        add(split.training, kind_of(training_kinds, c / clamps), c % clamps);
+        add(CaseRole::training, kind_of(training_kinds, c / clamps), c % clamps);
     }
     for (int c = 0; c < options.held_out_loads; ++c) {
-        add(split.held_out_loads, kind_of(training_kinds, c / clamps), c % clamps);
+        add(CaseRole::unseen_load, kind_of(training_kinds, c / clamps), c % clamps);
     }
     for (int c = 0; c < options.held_out_kinds; ++c) {
-        add(split.held_out_kinds, kind_of(held_out_kinds, c), c / n_held_out % clamps);
+        add(CaseRole::unseen_kind, kind_of(held_out_kinds, c), c / n_held_out % clamps);
     }
     for (int c = 0; c < options.held_out_clamp; ++c) {
-        add(split.held_out_clamp, kind_of(training_kinds, c), clamps);
+        add(CaseRole::unseen_clamp, kind_of(training_kinds, c), clamps);
     }
-    return split;
+    return cases;
 }
 
 } // namespace springfit

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What `springfit fit` reads and writes besides meshes.
+
+#include <cstdio>
+
+#include <springfit/score/embedded_error.hpp>
+
+#include "files.hpp"
+
+namespace program {
+
+using namespace springfit;
+
+template <int Dim>
+io::RecordedMotion<Dim, double> read_recorded(const std::string& path, std::vector<Warning>& warnings) {
+    auto recorded = io::read_motion<Dim, double>(path);
+    const auto warn = [&](std::string message) {
+        warnings.push_back({.code = WarningCode::incomplete_recording,
+                            .about = path,
+                            .message = std::move(message),
+                            .advice = {},
+                            .values = {}});
+    };
+    for (const std::string& column : recorded.differenced) {
+        warn(path + ": " + column + " is not in the file and was differenced");
+    }
+    if (!recorded.forces_recorded) {
+        warn(path + ": external forces are not in the file and were taken as zero");
+    }
+    if (!recorded.clamped_recorded) {
+        recorded.motion.clamped = still_nodes(recorded.motion);
+        warn(text(path, ": clamped nodes are not in the file; the ", recorded.motion.clamped.size(),
+                  " nodes that never move were taken as clamped"));
+    }
+    return recorded;
+}
+
+template <int Dim>
+void write_shown_motion(io::OutputGroup& outputs, const std::filesystem::path& folder,
+                        const io::MotionTopology& topology, const Calibration<Dim>& calibration,
+                        const std::optional<FineSide<Dim>>& fine, std::vector<std::string>& warnings) {
+    const auto& held_out = calibration.cases.held_out;
+    const auto& reference = held_out.motions.front();
+    const auto fitted = simulate(calibration.best().network, held_out.cases.front().scenario, reference.times).motion;
+    if (fitted.n_frames() < reference.n_frames()) {
+        warnings.push_back(text("motion.h5: the network's motion ended after ", fitted.n_frames(), " of ",
+                                reference.n_frames(), " frames"));
+    }
+    const auto write = [&](const char* name, const Motion<Dim, double>& motion, const io::MotionTopology& cells,
+                           const std::vector<Points<Dim, double>>& positions) {
+        if (positions.empty()) {
+            io::write_motion(outputs, folder / name, motion, cells);
+        } else {
+            const auto frames = static_cast<Index>(positions.size());
+            io::write_motion(outputs, folder / name, excerpt(motion, 0, frames), cells, &positions);
+        }
+    };
+    write("motion.h5", reference, topology, fitted.positions);
+    if (fine) {
+        const auto& [surface, nodes] = fine->surface;
+        write("surface.h5", motion_at(fine->held_out.motions.front(), nodes), io::motion_topology(surface),
+              carry(surface, fitted));
+    } else { // what a run with a finer reference left there is of another network
+        outputs.remove(folder / "surface.h5");
+        outputs.remove(folder / "surface.xdmf");
+    }
+}
+
+template <int Dim>
+void print_table(const Calibration<Dim>& calibration) {
+    std::printf("\n%-16s %10s %10s %12s %10s\n", "method", "held-out", "training", "stiffness", "seconds");
+    for (const auto& candidate : calibration.candidates) {
+        std::printf("%-16s %10.4f %10.4f %12.3f %10.2f%s\n", candidate.name.c_str(), candidate.held_out.error,
+                    candidate.training.error, candidate.relative_stiffness, candidate.seconds,
+                    &candidate == &calibration.best() ? "   <- returned" : "");
+    }
+    std::printf(
+        "(errors: |x - x_ref| / |x_ref - x_rest| over free nodes, frames and cases, inf where a network does not come "
+        "through a case;\nstiffness: energy in the reference's motion beside the first closed form)\n\n");
+    for (const auto& [part, error] : calibration.parts) {
+        std::printf("%s, held out: %-28s %.4f\n", calibration.best().name.c_str(), std::string(part).c_str(), error);
+    }
+    std::printf("\n");
+}
+
+template io::RecordedMotion<2, double> read_recorded<2>(const std::string&, std::vector<Warning>&);
+template io::RecordedMotion<3, double> read_recorded<3>(const std::string&, std::vector<Warning>&);
+template void write_shown_motion<2>(io::OutputGroup&, const std::filesystem::path&, const io::MotionTopology&,
+                                    const Calibration<2>&, const std::optional<FineSide<2>>&,
+                                    std::vector<std::string>&);
+template void write_shown_motion<3>(io::OutputGroup&, const std::filesystem::path&, const io::MotionTopology&,
+                                    const Calibration<3>&, const std::optional<FineSide<3>>&,
+                                    std::vector<std::string>&);
+template void print_table<2>(const Calibration<2>&);
+template void print_table<3>(const Calibration<3>&);
+
+} // namespace program

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <springfit/calibrate/candidates.hpp>
+#include <springfit/core/stage.hpp>
+#include <springfit/fit/acceleration_objective.hpp>
+#include <springfit/fit/dominant_term.hpp>
+#include <springfit/network/damping.hpp>
+#include <springfit/network/forces.hpp>
+#include <springfit/score/motion_error.hpp>
+
+namespace springfit {
+
+namespace detail {
+
+/// Newton iterations in which a network must come to rest: one that needs more is of no use.
+inline constexpr int scoring_iterations = 60;
+
+/// Elastic energy that motions put into the network, summed over all their frames, J; a preload at rest does not count.
+template <int Dim>
+double energy_in(const SpringNetwork<Dim, double>& network, const std::vector<Motion<Dim, double>>& motions) {
+    const double at_rest = elastic_energy(network, network.rest_positions);
+    double energy = 0;
+    for (const auto& motion : motions) {
+        for (const auto& positions : motion.positions) {
+            energy += elastic_energy(network, positions) - at_rest;
+        }
+    }
+    return energy;
+}
+
+/// Makes candidates, one kind after another.
+template <int Dim>
+class CandidateMaker {
+public:
+    CandidateMaker(const std::vector<NamedNetwork<Dim>>& given, const RecordedCases<Dim, double>& cases,
+                   const CalibrateOptions& options)
+        : m_given(given), m_cases(cases), m_options(options) {}
+
+    [[nodiscard]] Candidates<Dim> make() {
+        for (const auto& named : m_given) {
+            Candidate<Dim> candidate{.name = named.name, .network = named.network};
+            candidate.n_clamped = named.n_clamped;
+            candidate.caveat = named.caveat;
+            set_damping(candidate.network);
+            m_result.all.push_back(std::move(candidate));
+        }
+        const Method method = m_options.method;
+        if (matches_motion(method)) {
+            match_motion();
+        }
+        if (method != Method::closed_form && method != Method::trajectory && !m_result.interrupted) {
+            fit_accelerations();
+        }
+        const double energy = energy_in(m_result.all.front().network, m_cases.training.motions);
+        for (auto& candidate : m_result.all) {
+            candidate.relative_stiffness = energy_in(candidate.network, m_cases.training.motions) / energy;
+        }
+        return std::move(m_result);
+    }
+
+private:
+    void set_damping(SpringNetwork<Dim, double>& network) const {
+        network.damping = m_options.damping == DampingRule::ratio
+                              ? mass_stiffness_damping(network, m_options.zeta)
+                              : stiffness_proportional_damping(network, m_cases.stiffness_damping);
+    }
+
+    /// The given network that is nearest to the half of the training equilibria that move least; the first where there
+    /// are none.
+    [[nodiscard]] const SpringNetwork<Dim, double>& nearest() const {
+        const auto& training = m_cases.training;
+        std::vector<std::pair<double, std::size_t>> by_size;
+        for (std::size_t c = 0; c < training.size(); ++c) {
+            const auto& motion = training.motions[c];
+            if (training.is_static(c)) {
+                by_size.emplace_back((motion.positions.front() - motion.rest_positions).norm(), c);
+            }
+        }
+        std::sort(by_size.begin(), by_size.end());
+        std::vector<std::size_t> numbers;
+        for (std::size_t c = 0; c < (by_size.size() + 1) / 2; ++c) {
+            numbers.push_back(by_size[c].second);
+        }
+        const auto statics = training.subset(numbers);
+        const auto scenarios = statics.scenarios();
+        std::size_t best = 0;
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t c = 0; c < m_given.size() && !statics.empty(); ++c) {
+            const double error = motion_error(m_result.all[c].network, scenarios, statics.motions, {},
+                                              {.max_iterations = scoring_iterations,
+                                               .stop_at_failure = true,
+                                               .execution = m_options.execution})
+                                     .error;
+            if (error < least) {
+                least = error;
+                best = c;
+            }
+        }
+        return m_result.all[best].network;
+    }
+
+    void match_motion() {
+        const SpringNetwork<Dim, double> prior = nearest();
+        TrajectoryOptions how;
+        how.execution = m_options.execution;
+        how.prior_weight = m_options.prior_weight;
+        std::vector<Motion<Dim, double>> equilibria;
+        for (std::size_t c = 0; c < m_cases.training.size(); ++c) {
+            if (m_cases.training.is_static(c)) {
+                equilibria.push_back(m_cases.training.motions[c]);
+            }
+        }
+        const bool has_equilibria = !equilibria.empty();
+        if (!has_equilibria) {
+            how.horizon = m_options.horizon;
+            how.parameters.damping.fit =
+                m_options.damping == DampingRule::fitted && (prior.damping.array() > 0).any();
+        }
+        if (m_options.damping == DampingRule::proportional) {
+            how.parameters.damping_per_stiffness = m_cases.stiffness_damping;
+        }
+        Stage stage(m_options.progress, "fit trajectory");
+        try {
+            const TrajectoryProblem<Dim> problem(prior, has_equilibria ? equilibria : m_cases.training.motions, how);
+            GaussNewtonOptions engine;
+            engine.max_iterations = m_options.matching_iterations;
+            bool out_of_time = false;
+            engine.progress = [&, report = stage.part()](const Progress& progress) {
+                out_of_time = stage.seconds() > m_options.matching_seconds;
+                return report(progress) && !out_of_time;
+            };
+            Candidate<Dim> candidate{.name = "trajectory", .network = prior};
+            auto& report = candidate.trajectory.emplace(gauss_newton(problem, engine));
+            m_result.interrupted = stage.stopped();
+            if (!usable(report.status)) {
+                return;
+            }
+            if (report.status == Status::interrupted && !stage.stopped()) {
+                report.status = Status::iteration_limit; // its time is a budget like another
+            }
+            apply(problem, report, candidate.network);
+            if (m_options.damping == DampingRule::ratio) {
+                set_damping(candidate.network);
+            }
+            candidate.data_share.resize(prior.n_springs());
+            for (Index e = 0; e < prior.n_springs(); ++e) {
+                candidate.data_share(e) =
+                    report.data_share(problem.parameters().unknown(MotionParameter::stiffness, e));
+            }
+            candidate.seconds = stage.seconds();
+            m_result.all.push_back(std::move(candidate));
+        } catch (const InvalidArgument& error) { // as of a recording with uneven frames
+            m_result.warnings.push_back({.code = WarningCode::motion_not_matched,
+                                         .about = "trajectory",
+                                         .message = text("motion is not matched: ", error.what()),
+                                         .advice = {},
+                                         .values = {}});
+        }
+    }
+
+    void fit_accelerations() {
+        // The first network is the prior: what a spring gets that no motion excites.
+        const SpringNetwork<Dim, double> prior = m_result.all.front().network;
+        AccelerationOptions<double> how;
+        how.parameters.damping.fit = m_options.damping == DampingRule::fitted;
+        if (m_options.damping == DampingRule::proportional) {
+            how.parameters.damping_per_stiffness = m_cases.stiffness_damping;
+        }
+        const FitProblem problem = [&] {
+            const Stage stage(m_options.progress, "assemble objective");
+            AccelerationObjective<Dim, double> objective(prior, how, m_options.execution);
+            for (std::size_t c = 0; c < m_cases.training.size(); ++c) {
+                if (!m_cases.training.is_static(c)) {
+                    objective.add(m_cases.training.motions[c]);
+                }
+            }
+            return std::move(objective).problem();
+        }();
+        const auto add = [&](const std::string& name, const auto& solve) {
+            Stage stage(m_options.progress, "fit " + name);
+            Candidate<Dim> candidate{.name = name, .network = prior};
+            const FitReport& report = candidate.acceleration.emplace(solve(stage.part()));
+            m_result.interrupted = m_result.interrupted || stage.stopped();
+            if (!usable(report.status)) {
+                return;
+            }
+            apply(problem, report, candidate.network);
+            if (m_options.damping == DampingRule::ratio) {
+                set_damping(candidate.network);
+            }
+            candidate.seconds = stage.seconds();
+            m_result.all.push_back(std::move(candidate));
+        };
+        if (m_options.method == Method::automatic || m_options.method == Method::dominant_term) {
+            add("dominant_term", [&](ProgressCallback progress) {
+                DominantTermOptions sweeps;
+                sweeps.execution = m_options.execution;
+                sweeps.progress = std::move(progress);
+                return dominant_term(problem, sweeps);
+            });
+        }
+        if ((m_options.method == Method::automatic || m_options.method == Method::exact) && !m_result.interrupted) {
+            add("exact", [&](ProgressCallback progress) {
+                ExactOptions solver;
+                solver.execution = m_options.execution;
+                solver.progress = std::move(progress);
+                return m_options.exact_solver ? m_options.exact_solver(problem, solver) : exact(problem, solver);
+            });
+        }
+    }
+
+    const std::vector<NamedNetwork<Dim>>& m_given;
+    const RecordedCases<Dim, double>& m_cases;
+    const CalibrateOptions& m_options;
+    Candidates<Dim> m_result;
+};
+
+} // namespace detail
+
+template <int Dim>
+Candidates<Dim> make_candidates(const std::vector<NamedNetwork<Dim>>& given, const RecordedCases<Dim, double>& cases,
+                                const CalibrateOptions& options) {
+    require(!given.empty(), "given", "a network to start from", "none");
+    require(options.zeta >= 0 && std::isfinite(options.zeta), "zeta", "a value not below 0", options.zeta);
+    require(options.matching_seconds > 0, "matching_seconds", "a positive time, s", options.matching_seconds);
+    for (const auto& named : given) {
+        validate(named.network);
+        require(named.network.stiffness.size() > 0 && named.network.stiffness.maxCoeff() > 0,
+                text("network ", named.name), "stiffness to start from, as of a closed form (van_gelder, closed_forms)",
+                "none above 0");
+    }
+    validate(cases, given.front().network.n_nodes());
+    return detail::CandidateMaker<Dim>(given, cases, options).make();
+}
+
+} // namespace springfit

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+
+#include <springfit/core/execution.hpp>
+#include <springfit/core/progress.hpp>
+#include <springfit/fit/exact.hpp>
+
+namespace springfit {
+
+/// Which candidates are made, and which of them is returned.
+enum class Method {
+    automatic,     ///< all; the one with the least held-out error
+    closed_form,   ///< the given networks alone; the one with the least held-out error
+    trajectory,    ///< matching of motion, whatever its error
+    dominant_term, ///< acceleration fit by sweeps of the dominant-term approximation, whatever its error
+    exact          ///< acceleration fit by the exact solver, whatever its error
+};
+
+/// True where motion is matched, to which equilibria add.
+[[nodiscard]] constexpr bool matches_motion(Method method) {
+    return method == Method::automatic || method == Method::trajectory;
+}
+
+/// How springs are damped.
+enum class DampingRule {
+    proportional, ///< d = beta k, beta that of the reference
+    ratio,        ///< d = 2 zeta sqrt(k (m_i + m_j)) (`mass_stiffness_damping`)
+    fitted        ///< as the fit finds it
+};
+
+/// A solver of the acceleration fit to its global minimum: `exact`, or `ipopt::exact`.
+using ExactSolver = std::function<FitReport(const FitProblem&, const ExactOptions&)>;
+
+/// What `calibrate` does and how long it may take. The defaults are those of the program.
+struct CalibrateOptions {
+    Method method = Method::automatic;
+    DampingRule damping = DampingRule::proportional;
+    double zeta = 0.05;        ///< of DampingRule::ratio, >= 0
+    ExactSolver exact_solver{}; ///< empty: `exact`
+
+    /// Weight of the prior in matching of motion: cases are many enough to say more than a closed form does.
+    double prior_weight = 1e-5;
+    int horizon = 12;                ///< frames of a window, where there are no equilibria to match
+    int matching_iterations = 40;    ///< of matching of motion at most, >= 0
+    double matching_seconds = 300;   ///< of matching of motion at most, > 0, of wall clock
+    int scored_training_cases = 12;  ///< at most, evenly spread, >= 1: what a fit has seen says little
+    double usable_error = 0.25;      ///< held-out error from which on the verdict is `poor`
+
+    Execution execution{};
+    /// Called with the name of each stage; returning false ends that stage with the best so far, and the next one
+    /// begins unless it would be another fit.
+    ProgressCallback progress{};
+};
+
+} // namespace springfit

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <springfit/calibrate/candidate.hpp>
+#include <springfit/calibrate/options.hpp>
+#include <springfit/cases/case_set.hpp>
+
+namespace springfit {
+
+/// Fills in the errors of every candidate on the held-out cases, fits first, and then on a sample of the training's.
+/// A candidate that fails on held-out motion is not tried on the training's. Returns false where the callback ended it;
+/// what was not reached stays infinite.
+template <int Dim>
+[[nodiscard]] bool score(std::vector<Candidate<Dim>>& candidates, const RecordedCases<Dim, double>& cases,
+                         const CalibrateOptions& options = {});
+
+/// The error of a network on a part of the held-out cases.
+struct PartError {
+    std::string_view part; ///< "motions_in_time", "equilibria_of_trained_kinds" or "equilibria_of_unseen_kinds"
+    double error = 0;
+};
+
+/// Errors of a scored candidate on motions in time, on equilibria under loads of the kinds that training has, and on
+/// those under kinds that it never shows; those parts that there are. Each is the error of `motion_error` over its cases.
+template <int Dim>
+[[nodiscard]] std::vector<PartError> held_out_parts(const Candidate<Dim>& candidate,
+                                                    const CaseSet<Dim, double>& held_out);
+
+} // namespace springfit
+
+#include <springfit/calibrate/detail/score.hpp>

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <springfit/cases/load_case.hpp>
+#include <springfit/core/warning.hpp>
+#include <springfit/motion/replay.hpp>
+
+namespace springfit {
+
+/// Load cases with what the reference did under each. A motion of one frame is an equilibrium.
+template <int Dim, std::floating_point Scalar>
+struct CaseSet {
+    std::vector<LoadCase<Dim, Scalar>> cases;
+    std::vector<Motion<Dim, Scalar>> motions; ///< `motions[c]` is that of `cases[c]`
+
+    [[nodiscard]] std::size_t size() const { return cases.size(); }
+    [[nodiscard]] bool empty() const { return cases.empty(); }
+    [[nodiscard]] bool is_static(std::size_t c) const { return motions[c].n_frames() == 1; }
+
+    void add(LoadCase<Dim, Scalar> load_case, Motion<Dim, Scalar> motion) {
+        cases.push_back(std::move(load_case));
+        motions.push_back(std::move(motion));
+    }
+
+    [[nodiscard]] std::vector<Scenario<Dim, Scalar>> scenarios() const {
+        std::vector<Scenario<Dim, Scalar>> all;
+        for (const auto& load_case : cases) {
+            all.push_back(load_case.scenario);
+        }
+        return all;
+    }
+
+    /// Copies of these cases.
+    [[nodiscard]] CaseSet subset(const std::vector<std::size_t>& numbers) const {
+        CaseSet chosen;
+        for (std::size_t c : numbers) {
+            chosen.add(cases[c], motions[c]);
+        }
+        return chosen;
+    }
+};
+
+/// What a reference did: what fits learn from, and what judges them, which no fit sees.
+template <int Dim, std::floating_point Scalar>
+struct RecordedCases {
+    CaseSet<Dim, Scalar> training;
+    CaseSet<Dim, Scalar> held_out;
+    Scalar stiffness_damping = 0; ///< beta of D = beta K, s, of the reference as far as it is known
+    Scalar period = 0;            ///< of the slowest motion that the loads excite, s; 0: not known
+    bool interrupted = false;     ///< not all that were asked for are there
+    std::vector<Warning> warnings;
+};
+
+/// Throws InvalidArgument unless every case has a motion of `n_nodes` nodes with at least one frame, and there are both
+/// cases to learn from and cases that judge.
+template <int Dim, std::floating_point Scalar>
+void validate(const RecordedCases<Dim, Scalar>& recorded, Index n_nodes) {
+    for (const auto* set : {&recorded.training, &recorded.held_out}) {
+        const char* name = set == &recorded.training ? "training" : "held_out";
+        require(!set->empty(), name, "at least one case", "none");
+        require(set->motions.size() == set->cases.size(), name, text(set->cases.size(), " motions, one per case"),
+                set->motions.size());
+        for (std::size_t c = 0; c < set->size(); ++c) {
+            const auto& motion = set->motions[c];
+            require(motion.n_nodes() == n_nodes, text(name, " motion ", motion.name),
+                    text(n_nodes, " nodes, as the network"), motion.n_nodes());
+            require(motion.n_frames() > 0, text(name, " motion ", motion.name), "at least one frame", "none");
+            validate(motion);
+            validate(set->cases[c].scenario, n_nodes);
+        }
+    }
+}
+
+/// The nodes that are at their rest position, to the last bit, in every frame: in a recording that names no clamps they
+/// are taken as held.
+template <int Dim, std::floating_point Scalar>
+[[nodiscard]] std::vector<int> still_nodes(const Motion<Dim, Scalar>& motion) {
+    std::vector<int> nodes;
+    for (Index i = 0; i < motion.n_nodes(); ++i) {
+        const bool still = std::all_of(motion.positions.begin(), motion.positions.end(), [&](const auto& frame) {
+            return (frame.col(i) - motion.rest_positions.col(i)).isZero(0);
+        });
+        if (still) {
+            nodes.push_back(static_cast<int>(i));
+        }
+    }
+    return nodes;
+}
+
+/// Motions that were recorded elsewhere, each replayed as a load case: the last quarter of several, at least one, is held
+/// out, and of a single one the last third of its time. Throws InvalidArgument for none, and for one of fewer than 4
+/// frames.
+template <int Dim, std::floating_point Scalar>
+[[nodiscard]] RecordedCases<Dim, Scalar> split_motions(std::vector<Motion<Dim, Scalar>> motions) {
+    require(!motions.empty(), "motions", "at least one", "none");
+    for (const auto& motion : motions) {
+        require(motion.n_frames() >= 4, text("motion ", motion.name), "at least 4 frames", motion.n_frames());
+    }
+    RecordedCases<Dim, Scalar> recorded;
+    const auto keep = [&](CaseRole role, Motion<Dim, Scalar> motion) {
+        auto& set = role == CaseRole::training ? recorded.training : recorded.held_out;
+        LoadCase<Dim, Scalar> load_case{.scenario = replay(motion)};
+        load_case.role = role;
+        set.add(std::move(load_case), std::move(motion));
+    };
+    if (motions.size() == 1) {
+        const auto& motion = motions.front();
+        const Index split = 2 * motion.n_frames() / 3;
+        keep(CaseRole::training, excerpt(motion, 0, split));
+        keep(CaseRole::unseen_load, excerpt(motion, split, motion.n_frames()));
+    } else {
+        const std::size_t n_held_out = std::max<std::size_t>(1, motions.size() / 4);
+        for (std::size_t m = 0; m < motions.size(); ++m) {
+            keep(m + n_held_out < motions.size() ? CaseRole::training : CaseRole::unseen_load, std::move(motions[m]));
+        }
+    }
+    return recorded;
+}
+
+} // namespace springfit
