@@ -17,6 +17,10 @@ Terminal::~Terminal() {
 
 springfit::ProgressCallback Terminal::callback() {
     return [this](const springfit::Progress& progress) {
+        if (progress.fraction >= 1) {
+            end();
+            return !interrupted();
+        }
         if (progress.stage != m_stage) {
             end();
             begin(progress.stage);

@@ -21,6 +21,13 @@ public:
         : m_progress(std::move(progress)), m_name(std::move(name)), m_done(std::max<std::size_t>(parts, 1), 0) {
         m_stopped = !go_on(m_progress, m_name, 0);
     }
+    /// Reports the end, 1; parts alone do not.
+    ~Stage() {
+        try {
+            (void)go_on(m_progress, m_name, 1);
+        } catch (...) { // a callback that throws has thrown before
+        }
+    }
     Stage(const Stage&) = delete;
     Stage& operator=(const Stage&) = delete;
 
@@ -31,7 +38,7 @@ public:
             const std::scoped_lock lock(m_mutex);
             m_done.at(number) = std::max(m_done[number], std::clamp(progress.fraction, 0.0, 1.0));
             const double mean = std::accumulate(m_done.begin(), m_done.end(), 0.0) / static_cast<double>(m_done.size());
-            if (!go_on(m_progress, m_name, mean)) {
+            if (!go_on(m_progress, m_name, std::min(mean, 0.999))) {
                 m_stopped = true;
             }
             return !m_stopped;
