@@ -43,13 +43,11 @@ Hidden<Dim> hidden_network(const Mesh<Dim, double, Cell>& mesh, unsigned seed) {
 
 template <int Dim>
 std::vector<Scenario<Dim, double>> load_cases(const Hidden<Dim>& hidden, int n, unsigned seed) {
-    return random_load_cases(hidden.body, {.training = n,
-                                           .clamps = 3,
-                                           .held_out_loads = 0,
-                                           .held_out_kinds = 0,
-                                           .held_out_clamp = 0,
-                                           .seed = seed})
-        .training;
+    return scenarios_with(
+        random_load_cases(
+            hidden.body,
+            {.training = n, .clamps = 3, .held_out_loads = 0, .held_out_kinds = 0, .held_out_clamp = 0, .seed = seed}),
+        CaseRole::training);
 }
 
 template <int Dim>

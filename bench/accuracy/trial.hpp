@@ -96,8 +96,10 @@ template <class Reference>
     const auto record = [&](const auto& scenarios) {
         return record_equilibria(reference, pairs, scenarios, cases.strain, settings.execution);
     };
-    return {record(training.training), record(held_out.held_out_loads), record(held_out.held_out_kinds),
-            record(held_out.held_out_clamp)};
+    return {record(scenarios_with(training, CaseRole::training)),
+            record(scenarios_with(held_out, CaseRole::unseen_load)),
+            record(scenarios_with(held_out, CaseRole::unseen_kind)),
+            record(scenarios_with(held_out, CaseRole::unseen_clamp))};
 }
 
 struct FitSettings {

@@ -42,10 +42,9 @@ std::vector<NamedNetwork<Dim>> closed_forms_of(const AnyMesh& any, const SpringN
             if constexpr (MeshDim != Dim) {
                 throw InvalidArgument("mesh", text("dimension ", Dim), text(MeshDim));
             } else {
-                return closed_form_networks(mesh, network,
-                                            {.young = options.young,
-                                             .poisson = options.poisson,
-                                             .thickness = options.thickness.value_or(1)});
+                return closed_form_networks(
+                    mesh, network,
+                    {.young = options.young, .poisson = options.poisson, .thickness = options.thickness.value_or(1)});
             }
         },
         any);

@@ -21,8 +21,8 @@ ExactSolver exact_solver(const std::string& name) {
         return ipopt::exact(problem, how);
     };
 #else
-    throw InvalidArgument("--exact-solver", "native: this program was built without Ipopt (Debian: coinor-libipopt-dev)",
-                          name);
+    throw InvalidArgument("--exact-solver",
+                          "native: this program was built without Ipopt (Debian: coinor-libipopt-dev)", name);
 #endif
 }
 

@@ -4,6 +4,7 @@
 /// Everything that needs Eigen alone. Meshing (`cgal/`), Ipopt (`ipopt/`), files (`io/`) and threads
 /// (`parallel/`) are included one by one.
 
+#include <springfit/calibrate/calibrate.hpp>
 #include <springfit/cases/load_cases.hpp>
 #include <springfit/cases/noise.hpp>
 #include <springfit/cases/strain.hpp>
@@ -27,6 +28,7 @@
 #include <springfit/network/damping.hpp>
 #include <springfit/network/forces.hpp>
 #include <springfit/network/topology.hpp>
+#include <springfit/score/embedded_error.hpp>
 #include <springfit/score/frequency.hpp>
 #include <springfit/score/motion_error.hpp>
 #include <springfit/solve/clique_matrix.hpp>

@@ -18,10 +18,10 @@ struct Calibration {
     std::vector<Candidate<Dim>> candidates; ///< all that were made, scored, the given networks first
     Choice choice;                          ///< which of them, and by which rule
     Verdict verdict = Verdict::unfinished;
-    Status status = Status::failed;    ///< how the fit of the chosen one ended; `interrupted` where anything was cut short
-    std::vector<PartError> parts;      ///< held-out errors of the chosen one by kind of case
-    double stable_step = 0;            ///< of the chosen one with the first held-out case's clamps, s
-    std::vector<Warning> warnings;     ///< of the recording, of the fits and of the result
+    Status status = Status::failed; ///< how the fit of the chosen one ended; `interrupted` where anything was cut short
+    std::vector<PartError> parts;   ///< held-out errors of the chosen one by kind of case
+    double stable_step = 0;         ///< of the chosen one with the first held-out case's clamps, s
+    std::vector<Warning> warnings;  ///< of the recording, of the fits and of the result
     std::vector<std::pair<std::string, double>> seconds; ///< of each stage: "reference", "fit", "score"
 
     [[nodiscard]] const Candidate<Dim>& best() const { return candidates[choice.candidate]; }
@@ -49,11 +49,12 @@ template <int Dim>
 /// A body of one material, its springs and how its finite element reference is recorded.
 template <int Dim>
 struct BodyOptions {
-    double density = 0;             ///< rho, kg/m^3, > 0
-    double thickness = 1;           ///< h, m, > 0, of plane bodies
-    std::vector<int> clamped{};     ///< nodes of the mesh's corners that are held; empty: clamp sets are found (`clamp_sets`)
-    bool second_ring = false;       ///< springs between opposite vertices of neighbouring simplices, too
-    bool volume = false;            ///< simplices that hold their volume, too; for nearly incompressible materials
+    double density = 0;   ///< rho, kg/m^3, > 0
+    double thickness = 1; ///< h, m, > 0, of plane bodies
+    std::vector<int>
+        clamped{};            ///< nodes of the mesh's corners that are held; empty: clamp sets are found (`clamp_sets`)
+    bool second_ring = false; ///< springs between opposite vertices of neighbouring simplices, too
+    bool volume = false;      ///< simplices that hold their volume, too; for nearly incompressible materials
     std::optional<fem::Dilatation> dilatation{}; ///< of the reference; default: `reference_dilatation`
     RecordCasesOptions<Dim, double> record{};    ///< its execution and progress are those of `how`
     CalibrateOptions how{};
@@ -72,20 +73,21 @@ template <int Dim, CellType Cell>
 
 /// From a mesh and its material to the network that moves most like its finite element model.
 ///
-///     auto result = calibrate(mesh, fem::NeoHookean{.young = 5e4, .poisson = 0.45}, {.density = 1000, .volume = true});
+///     auto result = calibrate(mesh, fem::NeoHookean{.young = 5e4, .poisson = 0.45}, {.density = 1000, .volume =
+///     true});
 ///
-/// The closed forms are the networks to start from; load cases are recorded with `record_cases`, with a damping so light
-/// that it takes a quarter of the explicit step unless `body.record` says another. Throws InvalidArgument for what cannot
-/// be used.
+/// The closed forms are the networks to start from; load cases are recorded with `record_cases`, with a damping so
+/// light that it takes a quarter of the explicit step unless `body.record` says another. Throws InvalidArgument for
+/// what cannot be used.
 template <int Dim, CellType Cell, fem::Material Mat>
     requires(Cell::dimension == Dim)
 [[nodiscard]] Calibration<Dim> calibrate(const Mesh<Dim, double, Cell>& mesh, const Mat& material,
                                          const BodyOptions<Dim>& body) {
     const Stopwatch stopwatch;
     const auto corners = corner_mesh(mesh);
-    const auto given = closed_form_networks(
-        corners, springs_of(corners, body),
-        {.young = material.young, .poisson = material.poisson, .thickness = body.thickness});
+    const auto given =
+        closed_form_networks(corners, springs_of(corners, body),
+                             {.young = material.young, .poisson = material.poisson, .thickness = body.thickness});
     auto specimen = specimen_of(corners, body.density, body.thickness);
     if (!body.clamped.empty()) {
         specimen.clamps = {{body.clamped, {}}};

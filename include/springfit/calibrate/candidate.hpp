@@ -16,16 +16,16 @@ template <int Dim>
 struct NamedNetwork {
     std::string name;
     SpringNetwork<Dim, double> network;
-    Index n_clamped = 0; ///< springs that the formula makes negative and that were set to 0
+    Index n_clamped = 0;  ///< springs that the formula makes negative and that were set to 0
     std::string caveat{}; ///< for what the formula is exact, where not for this body
 };
 
 /// How a network did on a set of cases.
 struct CaseScores {
     double error = std::numeric_limits<double>::infinity(); ///< of the whole set; infinite until it is scored in full
-    std::vector<std::size_t> cases; ///< numbers in the case set
-    std::vector<double> errors;     ///< of each of them; infinite where it failed
-    std::vector<Status> statuses;   ///< how each ended; `interrupted` where it was not reached
+    std::vector<std::size_t> cases;                         ///< numbers in the case set
+    std::vector<double> errors;                             ///< of each of them; infinite where it failed
+    std::vector<Status> statuses;                           ///< how each ended; `interrupted` where it was not reached
 };
 
 /// A network beside others, with its fit and its errors.
@@ -33,9 +33,10 @@ template <int Dim>
 struct Candidate {
     std::string name;
     SpringNetwork<Dim, double> network;
-    std::optional<FitReport> acceleration{};       ///< of an acceleration fit
-    std::optional<TrajectoryReport> trajectory{};  ///< of matching of motion
-    Values<double> data_share{}; ///< of each spring, of matching of motion: above 1/2 the data set its stiffness, else the prior
+    std::optional<FitReport> acceleration{};      ///< of an acceleration fit
+    std::optional<TrajectoryReport> trajectory{}; ///< of matching of motion
+    Values<double>
+        data_share{}; ///< of each spring, of matching of motion: above 1/2 the data set its stiffness, else the prior
     Index n_clamped = 0;
     std::string caveat{};
     double seconds = 0; ///< of its fit

@@ -59,8 +59,8 @@ template <int Dim>
 
 [[nodiscard]] inline Verdict verdict_on(double held_out_error, const CalibrateOptions& options = {}) {
     return !(held_out_error < std::numeric_limits<double>::infinity()) ? Verdict::unusable
-           : held_out_error < options.usable_error                      ? Verdict::good
-                                                                        : Verdict::poor;
+           : held_out_error < options.usable_error                     ? Verdict::good
+                                                                       : Verdict::poor;
 }
 
 /// What a user should know of scored candidates.
@@ -80,11 +80,12 @@ template <int Dim>
         }
         if (candidate.acceleration && !candidate.acceleration->not_identified.empty()) {
             const std::size_t n = candidate.acceleration->not_identified.size();
-            warnings.push_back({.code = WarningCode::not_excited,
-                                .about = candidate.name,
-                                .message = text(candidate.name, ": ", n, " values that no motion excites kept their prior"),
-                                .advice = {},
-                                .values = {{"values", static_cast<double>(n)}}});
+            warnings.push_back(
+                {.code = WarningCode::not_excited,
+                 .about = candidate.name,
+                 .message = text(candidate.name, ": ", n, " values that no motion excites kept their prior"),
+                 .advice = {},
+                 .values = {{"values", static_cast<double>(n)}}});
         }
         if (candidate.n_clamped > 0) {
             warnings.push_back({.code = WarningCode::negative_set_to_zero,

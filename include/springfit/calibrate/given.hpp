@@ -33,8 +33,8 @@ template <int Dim, CellType Cell>
 }
 
 /// beta, s, of a damping that takes a quarter of a network's explicit step: with zeta = beta omega / 2 at the highest
-/// frequency omega = 2 / h, the step shrinks by sqrt(1 + zeta^2) - zeta, which is 0.744 at zeta = 0.3. Our definition of
-/// damping that is light. The network is taken without its own damping.
+/// frequency omega = 2 / h, the step shrinks by sqrt(1 + zeta^2) - zeta, which is 0.744 at zeta = 0.3. Our definition
+/// of damping that is light. The network is taken without its own damping.
 template <int Dim>
 [[nodiscard]] double light_damping(SpringNetwork<Dim, double> network) {
     network.damping.setZero();

@@ -37,16 +37,16 @@ using ExactSolver = std::function<FitReport(const FitProblem&, const ExactOption
 struct CalibrateOptions {
     Method method = Method::automatic;
     DampingRule damping = DampingRule::proportional;
-    double zeta = 0.05;        ///< of DampingRule::ratio, >= 0
+    double zeta = 0.05;         ///< of DampingRule::ratio, >= 0
     ExactSolver exact_solver{}; ///< empty: `exact`
 
     /// Weight of the prior in matching of motion: cases are many enough to say more than a closed form does.
     double prior_weight = 1e-5;
-    int horizon = 12;                ///< frames of a window, where there are no equilibria to match
-    int matching_iterations = 40;    ///< of matching of motion at most, >= 0
-    double matching_seconds = 300;   ///< of matching of motion at most, > 0, of wall clock
-    int scored_training_cases = 12;  ///< at most, evenly spread, >= 1: what a fit has seen says little
-    double usable_error = 0.25;      ///< held-out error from which on the verdict is `poor`
+    int horizon = 12;               ///< frames of a window, where there are no equilibria to match
+    int matching_iterations = 40;   ///< of matching of motion at most, >= 0
+    double matching_seconds = 300;  ///< of matching of motion at most, > 0, of wall clock
+    int scored_training_cases = 12; ///< at most, evenly spread, >= 1: what a fit has seen says little
+    double usable_error = 0.25;     ///< held-out error from which on the verdict is `poor`
 
     Execution execution{};
     /// Called with the name of each stage; returning false ends that stage with the best so far, and the next one

@@ -21,7 +21,8 @@ struct PartError {
 };
 
 /// Errors of a scored candidate on motions in time, on equilibria under loads of the kinds that training has, and on
-/// those under kinds that it never shows; those parts that there are. Each is the error of `motion_error` over its cases.
+/// those under kinds that it never shows; those parts that there are. Each is the error of `motion_error` over its
+/// cases.
 template <int Dim>
 [[nodiscard]] std::vector<PartError> held_out_parts(const Candidate<Dim>& candidate,
                                                     const CaseSet<Dim, double>& held_out);

@@ -23,7 +23,8 @@ public:
     /// beta of its own damping D = beta K, s, as far as it is known; else 0.
     [[nodiscard]] virtual Scalar stiffness_damping() const = 0;
 
-    /// K u = f_ext at rest: one displacement `[Dim x n_nodes]` per scenario, m; empty where its clamps do not hold the body.
+    /// K u = f_ext at rest: one displacement `[Dim x n_nodes]` per scenario, m; empty where its clamps do not hold the
+    /// body.
     [[nodiscard]] virtual std::vector<Points<Dim, Scalar>>
     linear_responses(const Scenarios& scenarios, const StaticRecordOptions<Scalar>& options) const = 0;
 
@@ -43,8 +44,8 @@ protected:
     CaseRecorder& operator=(CaseRecorder&&) = default;
 };
 
-/// Any model of the concept Reference as a CaseRecorder; equilibria where it is a StaticReference as well. The reference
-/// must outlive it, and is asked for several cases at the same time.
+/// Any model of the concept Reference as a CaseRecorder; equilibria where it is a StaticReference as well. The
+/// reference must outlive it, and is asked for several cases at the same time.
 template <Reference R>
 class ReferenceRecorder final : public CaseRecorder<decltype(make_stepper(std::declval<const R&>()))::dimension,
                                                     typename decltype(make_stepper(std::declval<const R&>()))::Scalar> {

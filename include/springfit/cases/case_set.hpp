@@ -87,9 +87,9 @@ template <int Dim, std::floating_point Scalar>
     return nodes;
 }
 
-/// Motions that were recorded elsewhere, each replayed as a load case: the last quarter of several, at least one, is held
-/// out, and of a single one the last third of its time. Throws InvalidArgument for none, and for one of fewer than 4
-/// frames.
+/// Motions that were recorded elsewhere, each replayed as a load case: the last quarter of several, at least one, is
+/// held out, and of a single one the last third of its time. Throws InvalidArgument for none, and for one of fewer than
+/// 4 frames.
 template <int Dim, std::floating_point Scalar>
 [[nodiscard]] RecordedCases<Dim, Scalar> split_motions(std::vector<Motion<Dim, Scalar>> motions) {
     require(!motions.empty(), "motions", "at least one", "none");

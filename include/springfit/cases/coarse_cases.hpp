@@ -35,7 +35,8 @@ template <int Dim>
                                FineNodes<Dim>::clamped_share);
         LoadCase<Dim, double> load_case = fine.cases[c];
         load_case.scenario = replay(motion);
-        if (motion.n_frames() == 1) { // looked for from rest first, as those of a reference on the network's own mesh are
+        if (motion.n_frames() ==
+            1) { // looked for from rest first, as those of a reference on the network's own mesh are
             load_case.scenario.initial_positions.resize(Dim, 0);
         }
         coarse.add(std::move(load_case), std::move(motion));

@@ -106,13 +106,15 @@ private:
     detail::SharedBody<Dim, Scalar> m_body;                ///< without damping
 };
 
-/// The dilatation with which a cell is a reference for any Poisson's ratio below 1/2: linear solids lock without a mean.
+/// The dilatation with which a cell is a reference for any Poisson's ratio below 1/2: linear solids lock without a
+/// mean.
 template <CellType Cell>
 inline constexpr fem::Dilatation reference_dilatation =
     Cell::dimension == 3 && Cell::n_nodes == Cell::n_corners ? fem::Dilatation::mean : fem::Dilatation::pointwise;
 
 /// Records the finite element model of a mesh, its material and density rho, kg/m^3, with the damping that it is told;
-/// `Model` refuses what it cannot use, at once. The vertices of a quadratic mesh come first, as `quadratic(mesh)` has them.
+/// `Model` refuses what it cannot use, at once. The vertices of a quadratic mesh come first, as `quadratic(mesh)` has
+/// them.
 template <int Dim, std::floating_point Scalar, CellType Cell, fem::Material Mat>
 [[nodiscard]] FemRecorder<Dim, Scalar> fem_recorder(const Mesh<Dim, Scalar, Cell>& mesh, const Mat& material,
                                                     double density, const fem::ModelOptions<Scalar>& options = {}) {

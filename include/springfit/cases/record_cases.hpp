@@ -14,10 +14,10 @@ struct RecordCasesOptions {
     using Scenarios = std::vector<Scenario<Dim, Scalar>>;
 
     // Motions in time, under the specimen's own clamps: loaded in a ramp, then released.
-    int training_motions = 6;          ///< >= 1
-    int held_out_motions = 3;          ///< >= 1: a load of a trained kind, then kinds that training never shows
-    int frames = 32;                   ///< of each, >= 4
-    Scalar deformation = Scalar(0.05); ///< largest displacement aimed at, as a part of the body's size, in (0, 1)
+    int training_motions = 6;              ///< >= 1
+    int held_out_motions = 3;              ///< >= 1: a load of a trained kind, then kinds that training never shows
+    int frames = 32;                       ///< of each, >= 4
+    Scalar deformation = Scalar(0.05);     ///< largest displacement aimed at, as a part of the body's size, in (0, 1)
     std::optional<Scalar> damping_ratio{}; ///< of the slowest motion, in [0, 1); heeded where damping can be set
     Scalar stiffness_damping = 0;          ///< else beta of D = beta K, s, >= 0
 
@@ -31,8 +31,8 @@ struct RecordCasesOptions {
 
     unsigned seed = 1; ///< fixes every load case
 
-    /// Displacements `[Dim x n_nodes]` under small loads, by which loads and times are scaled; empty: the reference's own
-    /// `linear_responses`. One that finds no equilibria takes those of a network with the values of a closed form.
+    /// Displacements `[Dim x n_nodes]` under small loads, by which loads and times are scaled; empty: the reference's
+    /// own `linear_responses`. One that finds no equilibria takes those of a network with the values of a closed form.
     std::function<std::vector<Points<Dim, Scalar>>(const Scenarios&)> responses{};
     /// False for clamped nodes whose equilibria are left out; empty: none are.
     std::function<bool(const std::vector<int>&)> holds{};
@@ -43,10 +43,10 @@ struct RecordCasesOptions {
 
 /// Load cases of a specimen, recorded: motions in time and equilibria, to learn from and to judge by.
 ///
-/// Loads are scaled by the linear response to them: those of motions to one largest displacement, those of equilibria to
-/// one strain of the specimen's edges. Motions last 1.25 periods of the slowest response u to a load f,
-/// omega^2 = f . u / (u . M u) (Rayleigh's quotient); the ramp takes 0.3 of them, the release comes at 0.6. Cases that
-/// the reference does not come through are left out, with a warning.
+/// Loads are scaled by the linear response to them: those of motions to one largest displacement, those of equilibria
+/// to one strain of the specimen's edges. Motions last 1.25 periods of the slowest response u to a load f, omega^2 = f
+/// . u / (u . M u) (Rayleigh's quotient); the ramp takes 0.3 of them, the release comes at 0.6. Cases that the
+/// reference does not come through are left out, with a warning.
 ///
 /// Throws InvalidArgument for an option out of range, for a specimen of other nodes than the reference, for clamps that
 /// do not hold the body ("clamps"), and where no case to learn from or none to judge by came about ("reference"). Where
@@ -58,10 +58,10 @@ record_cases(const CaseRecorder<Dim, Scalar>& reference, const Specimen<Dim, Sca
 
 /// The same for any model of the concept Reference, which is asked for several cases at the same time.
 template <Reference R>
-[[nodiscard]] auto record_cases(const R& reference,
-                                const Specimen<ReferenceRecorder<R>::dimension, typename ReferenceRecorder<R>::Scalar>& specimen,
-                                const RecordCasesOptions<ReferenceRecorder<R>::dimension,
-                                                         typename ReferenceRecorder<R>::Scalar>& options = {}) {
+[[nodiscard]] auto record_cases(
+    const R& reference,
+    const Specimen<ReferenceRecorder<R>::dimension, typename ReferenceRecorder<R>::Scalar>& specimen,
+    const RecordCasesOptions<ReferenceRecorder<R>::dimension, typename ReferenceRecorder<R>::Scalar>& options = {}) {
     const ReferenceRecorder<R> recorder(reference);
     const CaseRecorder<ReferenceRecorder<R>::dimension, typename ReferenceRecorder<R>::Scalar>& base = recorder;
     return record_cases(base, specimen, options);

@@ -12,6 +12,7 @@
 
 #define SPRINGFIT_INSTANTIATION extern template
 
+#include <springfit/compiled/calibrate.ipp>
 #include <springfit/compiled/cases.ipp>
 #include <springfit/compiled/closed_form.ipp>
 #include <springfit/compiled/fem_plane.ipp>

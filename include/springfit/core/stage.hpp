@@ -13,8 +13,8 @@
 
 namespace springfit {
 
-/// One stage of a long computation under a name of its own: gathers the progress of its parts, which may run at the same
-/// time, reports their mean to the caller, and remembers that the caller asked to stop.
+/// One stage of a long computation under a name of its own: gathers the progress of its parts, which may run at the
+/// same time, reports their mean to the caller, and remembers that the caller asked to stop.
 class Stage {
 public:
     Stage(ProgressCallback progress, std::string name, std::size_t parts = 1)

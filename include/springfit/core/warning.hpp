@@ -10,15 +10,15 @@ namespace springfit {
 
 /// What a warning is about. The names (`to_string`) are stable: programs may act on them.
 enum class WarningCode {
-    reference_ended_early,    ///< a motion of the reference ended before its last frame
-    no_equilibrium,           ///< the reference found none under a load case
-    clamps_left_out,          ///< clamps that hold the reference hold too few nodes of the network
-    motion_not_matched,       ///< the recorded motions cannot be matched, as those with uneven frames
-    softer_than_closed_form,  ///< an acceleration fit lost stiffness
-    not_excited,              ///< values that no motion excites kept their prior
-    negative_set_to_zero,     ///< springs of a closed form
-    unlike_reference,         ///< the network that is returned moves unlike the reference
-    incomplete_recording      ///< columns that a recording does not have were derived or taken as zero
+    reference_ended_early,   ///< a motion of the reference ended before its last frame
+    no_equilibrium,          ///< the reference found none under a load case
+    clamps_left_out,         ///< clamps that hold the reference hold too few nodes of the network
+    motion_not_matched,      ///< the recorded motions cannot be matched, as those with uneven frames
+    softer_than_closed_form, ///< an acceleration fit lost stiffness
+    not_excited,             ///< values that no motion excites kept their prior
+    negative_set_to_zero,    ///< springs of a closed form
+    unlike_reference,        ///< the network that is returned moves unlike the reference
+    incomplete_recording     ///< columns that a recording does not have were derived or taken as zero
 };
 
 [[nodiscard]] constexpr std::string_view to_string(WarningCode code) {
@@ -39,9 +39,9 @@ enum class WarningCode {
 /// Something that a user should know of a result, for people and for programs.
 struct Warning {
     WarningCode code;
-    std::string about;   ///< the candidate, load case or file
-    std::string message; ///< one sentence, the numbers in it
-    std::string advice;  ///< what may help; empty where there is nothing to do
+    std::string about;                                  ///< the candidate, load case or file
+    std::string message;                                ///< one sentence, the numbers in it
+    std::string advice;                                 ///< what may help; empty where there is nothing to do
     std::vector<std::pair<std::string, double>> values; ///< the numbers by name
 };
 

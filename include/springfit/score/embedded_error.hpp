@@ -18,10 +18,9 @@ namespace detail {
 
 /// Positions of the network in the frames of a case: as far as it comes in time, at rest for a single frame.
 template <int Dim>
-std::vector<Points<Dim, double>> positions_under(const SpringNetwork<Dim, double>& network,
-                                                 const Scenario<Dim, double>& scenario,
-                                                 const Motion<Dim, double>& reference,
-                                                 const ProgressCallback& progress) {
+std::vector<Points<Dim, double>>
+positions_under(const SpringNetwork<Dim, double>& network, const Scenario<Dim, double>& scenario,
+                const Motion<Dim, double>& reference, const ProgressCallback& progress) {
     if (reference.n_frames() > 1) {
         return simulate(network, scenario, reference.times, progress).motion.positions;
     }
@@ -39,9 +38,9 @@ std::vector<Points<Dim, double>> positions_under(const SpringNetwork<Dim, double
 
 } // namespace detail
 
-/// Errors at the nodes of a finer reference in cases: `coarse` has them at the network's nodes (`at_network`), `fine` as
-/// they were recorded. All fine nodes count, those that are held in the reference as well. The error is infinite where the
-/// callback ended the work. Throws InvalidArgument for sets that do not fit together.
+/// Errors at the nodes of a finer reference in cases: `coarse` has them at the network's nodes (`at_network`), `fine`
+/// as they were recorded. All fine nodes count, those that are held in the reference as well. The error is infinite
+/// where the callback ended the work. Throws InvalidArgument for sets that do not fit together.
 template <int Dim>
 [[nodiscard]] EmbeddedError embedded_error(const SpringNetwork<Dim, double>& network,
                                            const CaseSet<Dim, double>& coarse, const CaseSet<Dim, double>& fine,
@@ -59,13 +58,13 @@ template <int Dim>
             Motion<Dim, double> motion;
             motion.rest_positions = nodes.rest_positions;
             for (const auto& positions : frames) {
-                motion.positions.push_back(carry<Dim, double>(nodes.at_fine, nodes.rest_positions,
-                                                              network.rest_positions, positions));
+                motion.positions.push_back(
+                    carry<Dim, double>(nodes.at_fine, nodes.rest_positions, network.rest_positions, positions));
             }
             return motion;
         };
-        by_network[c] = carried(
-            detail::positions_under<Dim>(network, coarse.cases[c].scenario, coarse.motions[c], stage.part(c)));
+        by_network[c] =
+            carried(detail::positions_under<Dim>(network, coarse.cases[c].scenario, coarse.motions[c], stage.part(c)));
         by_reference[c] = carried(coarse.motions[c].positions);
         recorded[c].clamped.clear(); // the network may move those, too
     });

@@ -31,7 +31,8 @@ Calibration<Dim> calibrate(const std::vector<NamedNetwork<Dim>>& given, Recorded
         result.warnings.push_back(
             {.code = WarningCode::unlike_reference,
              .about = best.name,
-             .message = text("the returned network moves unlike the reference (held-out error ", best.held_out.error, ")"),
+             .message =
+                 text("the returned network moves unlike the reference (held-out error ", best.held_out.error, ")"),
              .advice = "cells that hold their volume, smaller strain or deformation, or more nodes may help",
              .values = {{"held_out_error", best.held_out.error}}});
     }

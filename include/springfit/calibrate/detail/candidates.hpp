@@ -87,11 +87,11 @@ private:
         std::size_t best = 0;
         double least = std::numeric_limits<double>::infinity();
         for (std::size_t c = 0; c < m_given.size() && !statics.empty(); ++c) {
-            const double error = motion_error(m_result.all[c].network, scenarios, statics.motions, {},
-                                              {.max_iterations = scoring_iterations,
-                                               .stop_at_failure = true,
-                                               .execution = m_options.execution})
-                                     .error;
+            const double error =
+                motion_error(
+                    m_result.all[c].network, scenarios, statics.motions, {},
+                    {.max_iterations = scoring_iterations, .stop_at_failure = true, .execution = m_options.execution})
+                    .error;
             if (error < least) {
                 least = error;
                 best = c;
@@ -114,8 +114,7 @@ private:
         const bool has_equilibria = !equilibria.empty();
         if (!has_equilibria) {
             how.horizon = m_options.horizon;
-            how.parameters.damping.fit =
-                m_options.damping == DampingRule::fitted && (prior.damping.array() > 0).any();
+            how.parameters.damping.fit = m_options.damping == DampingRule::fitted && (prior.damping.array() > 0).any();
         }
         if (m_options.damping == DampingRule::proportional) {
             how.parameters.damping_per_stiffness = m_cases.stiffness_damping;

@@ -25,10 +25,9 @@ bool score(std::vector<Candidate<Dim>>& candidates, const RecordedCases<Dim, dou
     std::size_t part = 0;
     const auto scores_of = [&](const SpringNetwork<Dim, double>& network, const CaseSet<Dim, double>& set,
                                const std::vector<std::size_t>& numbers) {
-        auto found = motion_error(network, set.scenarios(), set.motions, stage.part(part++),
-                                  {.max_iterations = detail::scoring_iterations,
-                                   .stop_at_failure = true,
-                                   .execution = options.execution});
+        auto found = motion_error(
+            network, set.scenarios(), set.motions, stage.part(part++),
+            {.max_iterations = detail::scoring_iterations, .stop_at_failure = true, .execution = options.execution});
         if (stage.stopped()) {
             found.error = std::numeric_limits<double>::infinity();
         }
@@ -53,9 +52,7 @@ std::vector<PartError> held_out_parts(const Candidate<Dim>& candidate, const Cas
     for (std::size_t s = 0; s < candidate.held_out.cases.size(); ++s) {
         const std::size_t c = candidate.held_out.cases[s];
         const auto& motion = held_out.motions[c];
-        const std::size_t part = !held_out.is_static(c)                                     ? 0
-                                 : held_out.cases[c].role != CaseRole::unseen_kind ? 1
-                                                                                            : 2;
+        const std::size_t part = !held_out.is_static(c) ? 0 : held_out.cases[c].role != CaseRole::unseen_kind ? 1 : 2;
         const FreeNodes free(motion.n_nodes(), motion.clamped);
         double size = 0;
         for (const auto& positions : motion.positions) {

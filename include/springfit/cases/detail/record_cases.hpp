@@ -58,7 +58,8 @@ private:
         if (m_options.responses) {
             return m_options.responses(scenarios);
         }
-        require(m_reference.finds_equilibria(), "responses", "linear responses to scale loads by, as those of a network",
+        require(m_reference.finds_equilibria(), "responses",
+                "linear responses to scale loads by, as those of a network",
                 "none, for a reference that moves in time alone");
         return m_reference.linear_responses(scenarios, {.execution = m_options.execution});
     }
@@ -73,9 +74,9 @@ private:
         Scalar slowest = std::numeric_limits<Scalar>::infinity();
         for (std::size_t c = 0; c < scenarios.size(); ++c) {
             const auto& u = displacements[c];
-            require(u.cols() == rest.cols(), "clamps", "nodes that keep the body from moving as a whole",
-                    text("a body that still can, with ", clamped_nodes(scenarios[c], rest.cols()).size(),
-                         " nodes held"));
+            require(
+                u.cols() == rest.cols(), "clamps", "nodes that keep the body from moving as a whole",
+                text("a body that still can, with ", clamped_nodes(scenarios[c], rest.cols()).size(), " nodes held"));
             const auto forces = external_forces<Dim, Scalar>(scenarios[c], m_specimen.masses, 0);
             const Scalar work = forces.cwiseProduct(u).sum();
             const Scalar inertia = (u.colwise().squaredNorm() * m_specimen.masses)(0);
@@ -163,13 +164,15 @@ private:
                 m_result.warnings.push_back(
                     {.code = WarningCode::clamps_left_out,
                      .about = "equilibria",
-                     .message = text(n_left_out, " equilibria are left out: their clamps hold the reference, but too few "
-                                                 "nodes of the network"),
+                     .message =
+                         text(n_left_out, " equilibria are left out: their clamps hold the reference, but too few "
+                                          "nodes of the network"),
                      .advice = "more nodes of the network may help",
                      .values = {{"left_out", static_cast<double>(n_left_out)}}});
             }
         }
-        // Half of the training is at small strain, which is quick to record and to match and tells as much of most springs.
+        // Half of the training is at small strain, which is quick to record and to match and tells as much of most
+        // springs.
         Cases judging, large, small;
         std::size_t n_training = 0;
         for (auto& load_case : cases) {
@@ -204,12 +207,12 @@ private:
             } else if (status == Status::interrupted) {
                 m_result.interrupted = true;
             } else {
-                m_result.warnings.push_back({.code = WarningCode::no_equilibrium,
-                                             .about = scenarios[c].name,
-                                             .message = text("static load case ", scenarios[c].name,
-                                                             ": the reference found no equilibrium"),
-                                             .advice = "a smaller strain may help",
-                                             .values = {{"strain", static_cast<double>(strain)}}});
+                m_result.warnings.push_back(
+                    {.code = WarningCode::no_equilibrium,
+                     .about = scenarios[c].name,
+                     .message = text("static load case ", scenarios[c].name, ": the reference found no equilibrium"),
+                     .advice = "a smaller strain may help",
+                     .values = {{"strain", static_cast<double>(strain)}}});
             }
         }
     }

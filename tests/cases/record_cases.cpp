@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "threads.hpp"
+#include "tolerance.hpp"
+
+#include <springfit/springfit.hpp>
+
+using namespace springfit;
+
+namespace {
+
+template <int Dim>
+auto box() {
+    if constexpr (Dim == 2) {
+        return triangle_grid<double>({3, 5}, {0.3, 0.5});
+    } else {
+        return tetrahedron_grid<double>({2, 3, 2}, {0.2, 0.3, 0.2});
+    }
+}
+
+template <int Dim>
+Specimen<Dim, double> specimen() {
+    auto body = specimen_of(box<Dim>(), 1000.);
+    body.clamps = {{side_nodes(body.rest_positions, {.axis = 1}), {}}};
+    return body;
+}
+
+template <int Dim>
+RecordCasesOptions<Dim, double> few() {
+    RecordCasesOptions<Dim, double> options;
+    options.training_motions = 3;
+    options.held_out_motions = 3;
+    options.frames = 8;
+    options.training_equilibria = 7;
+    options.held_out_loads = 2;
+    options.held_out_kinds = 2;
+    return options;
+}
+
+const fem::LinearElastic linear{.young = 1e4, .poisson = 0.3};
+
+} // namespace
+
+TEST_CASE_TEMPLATE("cases have their roles, kinds, clamps and strains", T, test::Space<2, double>,
+                   test::Space<3, double>) {
+    constexpr int dim = T::dimension;
+    const auto body = specimen<dim>();
+    const auto reference = fem_recorder(box<dim>(), linear, 1000.);
+    const auto cases = record_cases<dim, double>(reference, body, few<dim>());
+    CHECK(!cases.interrupted);
+    CHECK(cases.warnings.empty());
+    CHECK(cases.training.size() == 3 + 7);
+    CHECK(cases.held_out.size() == 3 + 4);
+    std::size_t n_small = 0;
+    for (const auto* set : {&cases.training, &cases.held_out}) {
+        for (std::size_t c = 0; c < set->size(); ++c) {
+            const auto& [scenario, kind, clamp_set, role, strain] = set->cases[c];
+            const auto& motion = set->motions[c];
+            CHECK((role == CaseRole::training) == (set == &cases.training));
+            REQUIRE(kind.has_value());
+            const bool is_trained =
+                std::find(training_kinds.begin(), training_kinds.end(), *kind) != training_kinds.end();
+            CHECK(is_trained == (role != CaseRole::unseen_kind));
+            CHECK(motion.clamped == clamped_nodes(scenario, body.n_nodes()));
+            CHECK((motion.clamped == body.clamps.front().nodes) == (clamp_set == 0));
+            CHECK(set->is_static(c) == (strain > 0));
+            if (set->is_static(c)) {
+                // For a linear material the strain is what was asked for.
+                const auto found = linear_edge_strain(body.edges, body.rest_positions,
+                                                      motion.positions.front() - body.rest_positions);
+                CHECK(test::relative(std::max(found.percentile_95, found.max / 4), strain, strain) < 1e-6);
+                n_small += strain < 0.01 ? 1 : 0;
+            } else {
+                CHECK(motion.n_frames() == 8);
+                CHECK(test::relative(motion.times.back(), 1.25 * cases.period, cases.period) < 1e-12);
+            }
+        }
+    }
+    CHECK(n_small == 3); // every second one to learn from
+}
+
+TEST_CASE("recorders answer as their references do") {
+    const auto mesh = box<2>();
+    const auto body = specimen<2>();
+    const fem::Model model{mesh, linear, 1000.};
+    const auto by_model = record_cases(model, body, few<2>()); // any reference
+    const auto by_recorder = record_cases<2, double>(fem_recorder(mesh, linear, 1000.), body, few<2>());
+    auto many = few<2>();
+    many.execution = test::threads(3);
+    const auto by_threads = record_cases(model, body, many);
+    REQUIRE(by_model.training.size() == by_recorder.training.size());
+    for (std::size_t c = 0; c < by_model.training.size(); ++c) {
+        CHECK(by_model.training.motions[c].positions == by_recorder.training.motions[c].positions);
+        CHECK(by_model.training.motions[c].positions == by_threads.training.motions[c].positions);
+    }
+
+    // Nodes on edges: their clamps are those of the edge's ends, and a recording has the vertices alone.
+    const auto fine = quadratic(mesh);
+    const fem::Model fine_model{fine, linear, 1000.};
+    Scenario<2, double> pulled;
+    pulled.clamps = body.clamps;
+    pulled.loads.push_back({{0}, Points<2, double>::Zero(2, 1), {}});
+    pulled.loads.back().nodes = {static_cast<int>(mesh.n_nodes()) - 1};
+    pulled.loads.back().forces << 0.3, -0.2;
+    auto all_held = pulled;
+    const auto [at_corners, at_nodes] = corner_interpolations(fine);
+    all_held.clamps.front().nodes = targets_of(at_nodes, pulled.clamps.front().nodes);
+    CHECK(all_held.clamps.front().nodes.size() == 2 * pulled.clamps.front().nodes.size() - 1);
+    const auto recorded = fem_recorder(fine, linear, 1000.).record_statics({pulled}, {}).front().motion;
+    const auto expected = record_static(fine_model, all_held).motion;
+    CHECK(recorded.n_nodes() == mesh.n_nodes());
+    CHECK(recorded.positions.front() == expected.positions.front().leftCols(mesh.n_nodes()));
+    CHECK(recorded.external_forces.front() == expected.external_forces.front().leftCols(mesh.n_nodes()));
+}
+
+TEST_CASE("damping is told where it can be") {
+    const auto recorder = fem_recorder(box<2>(), linear, 1000.);
+    auto options = few<2>();
+    options.training_equilibria = 0;
+    options.damping_ratio = 0.1;
+    const auto damped = record_cases<2, double>(recorder, specimen<2>(), options);
+    CHECK(test::relative(damped.stiffness_damping, 0.2 * damped.period / (2 * std::numbers::pi), 1e-3) < 1e-12);
+    const fem::Model model{box<2>(), linear, 1000., {.stiffness_damping = 2e-4}};
+    CHECK(record_cases(model, specimen<2>(), options).stiffness_damping == 2e-4); // its own
+}
+
+TEST_CASE("a program that moves in time alone is scaled by the responses of a network") {
+    const auto mesh = box<2>();
+    auto network = springs_along_edges(mesh, {.density = 1000.});
+    network.stiffness = van_gelder(mesh, network.springs, {.young = 1e4, .poisson = 0.3}).stiffness;
+    SymplecticEuler<2, double> stepper(network);
+    const UserReference<2, double> reference{
+        mesh.nodes, network.mass, [stepper](auto& state, const auto& scenario, double dt) mutable {
+            auto inner = stepper;
+            const Status status = inner.advance(state, scenario, dt);
+            state.time -= status == Status::converged ? dt : 0; // the reference counts time itself
+            return status;
+        }};
+    auto options = few<2>();
+    CHECK_THROWS_WITH_AS((void)record_cases(reference, specimen<2>(), options), doctest::Contains("responses"),
+                         InvalidArgument);
+    options.responses = [&](const auto& scenarios) { return linear_responses(network, scenarios); };
+    const auto cases = record_cases(reference, specimen<2>(), options);
+    CHECK(cases.training.size() == 3); // no equilibria
+    CHECK(cases.held_out.size() == 3);
+    double largest = 0;
+    for (const auto& positions : cases.training.motions.front().positions) {
+        largest = std::max(largest, (positions - mesh.nodes).colwise().norm().maxCoeff());
+    }
+    const double size = std::hypot(0.3, 0.5);
+    CHECK(largest > 0.02 * size);
+    CHECK(largest < 0.1 * size);
+}
+
+TEST_CASE("a reference that fails is left out with a warning, and one that always fails is refused") {
+    const auto mesh = box<2>();
+    const auto body = specimen<2>();
+    auto options = few<2>();
+    auto network = springs_along_edges(mesh, {.density = 1000.});
+    network.stiffness.setConstant(1e3);
+    options.responses = [&](const auto& scenarios) { return linear_responses(network, scenarios); };
+    const UserReference<2, double> broken{mesh.nodes, body.masses,
+                                          [](auto&, const auto&, double) { return Status::diverged; }};
+    CHECK_THROWS_WITH_AS((void)record_cases(broken, body, options), doctest::Contains("none that converged"),
+                         InvalidArgument);
+    const UserReference<2, double> half{mesh.nodes, body.masses, [](auto& state, const auto&, double) {
+                                            return state.time > 0.1 ? Status::diverged : Status::converged;
+                                        }};
+    const auto cases = record_cases(half, body, options);
+    CHECK(cases.warnings.size() == 6);
+    for (const auto& warning : cases.warnings) {
+        CHECK(warning.code == WarningCode::reference_ended_early);
+        CHECK(!warning.advice.empty());
+    }
+}
+
+TEST_CASE("clamps and options are checked") {
+    const auto recorder = fem_recorder(box<2>(), linear, 1000.);
+    auto loose = specimen<2>();
+    loose.clamps = {{{0}, {}}};
+    CHECK_THROWS_WITH_AS((void)record_cases<2, double>(recorder, loose, few<2>()), doctest::Contains("clamps"),
+                         InvalidArgument);
+    const auto refused = [&](const auto& change) {
+        auto options = few<2>();
+        change(options);
+        CHECK_THROWS_AS((void)record_cases<2, double>(recorder, specimen<2>(), options), InvalidArgument);
+    };
+    refused([](auto& o) { o.training_motions = 0; });
+    refused([](auto& o) { o.held_out_motions = 0; });
+    refused([](auto& o) { o.frames = 3; });
+    refused([](auto& o) { o.deformation = 1; });
+    refused([](auto& o) { o.damping_ratio = 1; });
+    refused([](auto& o) { o.stiffness_damping = -1; });
+    refused([](auto& o) { o.training_equilibria = -1; });
+    refused([](auto& o) { o.clamp_sets = 0; });
+    refused([](auto& o) { o.strain = std::nan(""); });
+    refused([](auto& o) { o.small_strain = 0; });
+    auto options = few<2>();
+    options.holds = [](const std::vector<int>&) { return false; };
+    const auto cases = record_cases<2, double>(recorder, specimen<2>(), options);
+    CHECK(cases.training.size() == 3);
+    REQUIRE(cases.warnings.size() == 1);
+    CHECK(cases.warnings.front().code == WarningCode::clamps_left_out);
+}
+
+TEST_CASE("recorded motions are split") {
+    Motion<2, double> motion;
+    motion.name = "swing";
+    motion.rest_positions = Points<2, double>::Random(2, 4);
+    motion.clamped = {0};
+    for (int t = 0; t < 9; ++t) {
+        motion.times.push_back(0.1 * t);
+        motion.positions.push_back(motion.rest_positions);
+        motion.positions.back().rightCols(2).array() += 0.01 * t;
+        motion.velocities.push_back(Points<2, double>::Zero(2, 4));
+        motion.accelerations.push_back(Points<2, double>::Zero(2, 4));
+        motion.external_forces.push_back(Points<2, double>::Zero(2, 4));
+    }
+    CHECK(still_nodes(motion) == std::vector<int>{0, 1});
+    const auto one = split_motions<2, double>({motion});
+    CHECK(one.training.motions.front().n_frames() == 6);
+    CHECK(one.held_out.motions.front().n_frames() == 3);
+    CHECK(one.held_out.motions.front().positions.front() == motion.positions[6]);
+    const auto five = split_motions<2, double>({motion, motion, motion, motion, motion});
+    CHECK(five.training.size() == 4);
+    CHECK(five.held_out.size() == 1);
+    CHECK(five.held_out.cases.front().role == CaseRole::unseen_load);
+    CHECK(!five.held_out.cases.front().kind);
+    CHECK_THROWS_AS((void)split_motions<2, double>({}), InvalidArgument);
+    CHECK_THROWS_AS((void)split_motions<2, double>({excerpt(motion, 0, 3)}), InvalidArgument);
+    CHECK_THROWS_AS(validate(one, 5), InvalidArgument);
+    validate(one, 4);
+}
