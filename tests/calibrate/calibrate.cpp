@@ -102,7 +102,7 @@ TEST_CASE("the same bits on any number of threads") {
     auto cases = cases_of(truth);
     CalibrateOptions options;
     const auto one = calibrate(even(truth), cases, options);
-    options.execution = test::threads(3);
+    options.execution = test::backwards_on_threads();
     const auto three = calibrate(even(truth), cases, options);
     for (std::size_t c = 0; c < one.candidates.size(); ++c) {
         CHECK(one.candidates[c].network.stiffness == three.candidates[c].network.stiffness);

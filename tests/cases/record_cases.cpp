@@ -85,7 +85,7 @@ TEST_CASE("recorders answer as their references do") {
     const auto by_model = record_cases(model, body, few<2>()); // any reference
     const auto by_recorder = record_cases<2, double>(fem_recorder(mesh, linear, 1000.), body, few<2>());
     auto many = few<2>();
-    many.execution = test::threads(3);
+    many.execution = test::backwards_on_threads();
     const auto by_threads = record_cases(model, body, many);
     REQUIRE(by_model.training.size() == by_recorder.training.size());
     for (std::size_t c = 0; c < by_model.training.size(); ++c) {
