@@ -1,17 +1,18 @@
 # The components that are compiled once: what others instantiate of core's templates, and CGAL's.
 
-# springfit_compiled_sources(<variable> <name>...): one unit for each include/springfit/compiled/<name>.ipp.
+# springfit_compiled_sources(<variable> <list>...): one unit for each list, a file .ipp as those of include/springfit/compiled.
 function(springfit_compiled_sources variable)
   set(sources)
-  foreach(name IN LISTS ARGN)
-    set(source "${PROJECT_BINARY_DIR}/compiled/${name}.cpp")
+  foreach(list IN LISTS ARGN)
+    get_filename_component(name "${list}" NAME_WE)
+    set(source "${CMAKE_CURRENT_BINARY_DIR}/compiled/${name}.cpp")
     file(CONFIGURE OUTPUT "${source}" CONTENT [[
-// Written by CMake: the instantiations that springfit/compiled/@name@.ipp declares.
+// Written by CMake: the instantiations that @name@.ipp declares.
 #include <springfit/compiled/compiled.hpp>
 
 #undef SPRINGFIT_INSTANTIATION
 #define SPRINGFIT_INSTANTIATION template
-#include <springfit/compiled/@name@.ipp>
+#include "@list@"
 ]] @ONLY)
     list(APPEND sources "${source}")
   endforeach()
@@ -27,12 +28,7 @@ function(springfit_add_instantiations target)
   else()
     list(FILTER lists EXCLUDE REGEX "_float\\.ipp$")
   endif()
-  set(names)
-  foreach(list IN LISTS lists)
-    get_filename_component(name "${list}" NAME_WE)
-    list(APPEND names ${name})
-  endforeach()
-  springfit_compiled_sources(sources ${names})
+  springfit_compiled_sources(sources ${lists})
   add_library(${target} STATIC ${sources})
   target_link_libraries(${target} PUBLIC springfit::core)
 endfunction()

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Counts allocations. Included before any other header, by one file of a program, since it replaces operator new.
-// Counts none under Clang's thread sanitizer, which replaces it too.
-
-#define EIGEN_RUNTIME_NO_MALLOC // Eigen then aborts on an allocation where it is told so
+// Counts allocations. Included by one file of a program, since it replaces operator new. Counts none under Clang's
+// thread sanitizer, which replaces it too. Eigen's own are no `new`: tests define EIGEN_RUNTIME_NO_MALLOC, and forbid
+// them.
 
 #include <atomic>
 #include <cstdlib>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "instances/instances.hpp"
 #include "tolerance.hpp"
 
 #include <random>
@@ -279,3 +280,5 @@ Motion<Dim, double> vibration(const SpringNetwork<Dim, double>& network, const D
 }
 
 } // namespace springfit::test
+
+#include "fit_data.ipp" // compiled once

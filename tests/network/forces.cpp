@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "eigenvalues.hpp"
 #include "tolerance.hpp"
-
-#include <Eigen/Eigenvalues>
 
 #include <springfit/mesh/structured.hpp>
 #include <springfit/network/forces.hpp>
@@ -142,9 +141,7 @@ TEST_CASE_TEMPLATE("the semidefinite Hessian drops negative curvature alone", T,
         add_stiffness<dim, double>(net, at, curvature, matrix);
         return full(matrix);
     };
-    const auto smallest = [](const DenseMatrix<double>& matrix) {
-        return Eigen::SelfAdjointEigenSolver<DenseMatrix<double>>(matrix).eigenvalues()(0);
-    };
+    const auto smallest = [](const DenseMatrix<double>& matrix) { return test::eigenvalues(matrix)(0); };
     const Points<dim, double> squeezed = 0.5 * x;
     CHECK(smallest(assemble(squeezed, Curvature::exact)) < -0.1);
     CHECK(smallest(assemble(squeezed, Curvature::positive_semidefinite)) > -1e-12);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "eigenvalues.hpp"
 #include "tolerance.hpp"
 
 #include <numeric>
 #include <random>
-
-#include <Eigen/Eigenvalues>
 
 #include <springfit/mesh/structured.hpp>
 #include <springfit/network/forces.hpp>
@@ -177,9 +176,7 @@ TEST_CASE_TEMPLATE("the semidefinite Hessian of cells keeps what is positive at 
     Example<dim, double> example;
     auto& network = example.network;
     const FreeNodes free(network.n_nodes(), {});
-    const auto smallest = [](const DenseMatrix<double>& matrix) {
-        return Eigen::SelfAdjointEigenSolver<DenseMatrix<double>>(matrix).eigenvalues()(0);
-    };
+    const auto smallest = [](const DenseMatrix<double>& matrix) { return test::eigenvalues(matrix)(0); };
     CHECK(smallest(hessian<dim>(network, free, 0.5 * example.positions, Curvature::exact)) < -0.1);
     CHECK(smallest(hessian<dim>(network, free, 0.5 * example.positions, Curvature::positive_semidefinite)) > -1e-12);
     // At rest there is no pressure: only cells of negative stiffness are left out.

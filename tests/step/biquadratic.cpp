@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "../network/biquadratic_example.hpp"
+#include "eigenvalues.hpp"
 #include "tolerance.hpp"
-
-#include <Eigen/Eigenvalues>
 
 #include <springfit/closed_form/delingette.hpp>
 #include <springfit/fem/statics.hpp>
@@ -114,8 +113,7 @@ TEST_CASE_TEMPLATE("the stable step is below the true limit and not far below it
             k.middleCols<dim>(dim * i) /= std::sqrt(network.mass(i));
             k.middleRows<dim>(dim * i) /= std::sqrt(network.mass(i));
         }
-        const double largest =
-            Eigen::SelfAdjointEigenSolver<DenseMatrix<double>>(k, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
+        const double largest = test::eigenvalues(k).maxCoeff();
         const double limit = 2 / std::sqrt(largest);
         const double bound = stable_step_at<dim, double>(network, x);
         CHECK(bound < limit);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "instances/instances.hpp"
+
 #include <random>
 
 #include <springfit/mesh/structured.hpp>
@@ -83,3 +85,5 @@ SpringNetwork<Dim, Scalar> two_masses(Scalar stiffness, Scalar damping) {
 }
 
 } // namespace springfit::test
+
+#include "example.ipp" // compiled once

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "eigenvalues.hpp"
 #include "tolerance.hpp"
-
-#include <Eigen/Eigenvalues>
 
 #include <springfit/step/symplectic_euler.hpp>
 
@@ -37,8 +36,7 @@ double true_limit(const SpringNetwork<Dim, double>& network, const Points<Dim, d
     for (int i = 0; i < 60; ++i) {
         const double h = (low + high) / 2;
         const DenseMatrix<double> excess = h / 2 * c + h * h / 4 * k;
-        const double largest =
-            Eigen::SelfAdjointEigenSolver<DenseMatrix<double>>(excess, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
+        const double largest = test::eigenvalues(excess).maxCoeff();
         (largest < 1 ? low : high) = h;
     }
     return low;

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
 #include "random_meshes.hpp"
 #include "tolerance.hpp"
 
 #include <springfit/cgal/location.hpp>
-#include <springfit/mesh/structured.hpp>
 
-using namespace springfit;
-using test::random_points;
-using test::relative;
-using test::rounding;
-using test::shaken;
-
-namespace {
+namespace springfit::test {
 
 /// Points inside are found, in the cell that holds them, with weights that give the point back.
 template <int Dim, class Scalar, class Cell>
@@ -74,38 +69,4 @@ void check_nearest(const Mesh<Dim, Scalar, Cell>& mesh) {
                     InvalidArgument);
 }
 
-} // namespace
-
-TEST_CASE_TEMPLATE("the cell that holds a point is found in every kind of cell", Scalar, float, double) {
-    const Vector<2, Scalar> square{1, 1};
-    const Vector<3, Scalar> cube{1, 1, 1};
-    check_inside(shaken(triangle_grid<Scalar>({5, 4}, square)));
-    check_inside(shaken(quad_grid<Scalar>({5, 4}, square)));
-    check_inside(quadratic(shaken(triangle_grid<Scalar>({3, 3}, square))));
-    check_inside(shaken(tetrahedron_grid<Scalar>({3, 4, 3}, cube)));
-    check_inside(shaken(hex_grid<Scalar>({4, 4, 3}, cube)));
-    check_inside(quadratic(shaken(tetrahedron_grid<Scalar>({2, 2, 2}, cube))));
-}
-
-TEST_CASE_TEMPLATE("the nearest surface point is found from inside and outside", Scalar, float, double) {
-    check_nearest(triangle_grid<Scalar>({3, 4}, {1, 1}));
-    check_nearest(quad_grid<Scalar>({3, 4}, {1, 1}));
-    check_nearest(tetrahedron_grid<Scalar>({3, 2, 2}, {1, 1, 1}));
-    check_nearest(hex_grid<Scalar>({3, 2, 2}, {1, 1, 1}));
-}
-
-TEST_CASE("a membrane holds the points on it and knows the nearest to others") {
-    const auto flat = triangle_grid<double>({4, 4}, {1., 1.});
-    Mesh<3, double, Tri3> sheet{Points<3, double>(3, flat.n_nodes()), flat.cells};
-    sheet.nodes << flat.nodes, flat.nodes.row(0); // the plane z = x
-    const cgal::Locator locator(sheet);
-    const auto on = locator.cell_at({0.3, 0.6, 0.3});
-    REQUIRE(on.has_value());
-    CHECK((sheet.cell_nodes(on->cell) * on->weights - Vector<3, double>{0.3, 0.6, 0.3}).norm() < 1e-14);
-    CHECK_FALSE(locator.cell_at({0.3, 0.6, 0.31}).has_value());
-    const auto near = locator.nearest({0.3, 0.6, 0.5});
-    CHECK((near.point - Vector<3, double>{0.4, 0.6, 0.4}).norm() < 1e-14);
-    CHECK(relative(near.distance, std::sqrt(0.02), 1.) < 1e-14);
-    CHECK(near.facet == -1);
-    CHECK(near.nodes.size() == 3);
-}
+} // namespace springfit::test
