@@ -34,14 +34,11 @@ function(springfit_add_instantiations target)
 endfunction()
 
 # springfit::compiled: core's templates in the plane and in space, in double and float (two libraries, since most programs
-# need one). Its factors are CHOLMOD's where that component is there, and then so are those of all that link it.
+# need one).
 function(springfit_add_compiled)
   springfit_add_instantiations(springfit_compiled_double)
   springfit_add_instantiations(springfit_compiled_float FLOAT)
   target_link_libraries(springfit_compiled_float PUBLIC springfit_compiled_double)
-  if(TARGET springfit::cholmod)
-    target_link_libraries(springfit_compiled_double PUBLIC springfit::cholmod)
-  endif()
   if(SPRINGFIT_NATIVE) # vectors and their alignment are of one kind in all of a program
     target_compile_options(springfit_compiled_double PUBLIC -march=native)
   endif()

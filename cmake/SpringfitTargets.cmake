@@ -18,7 +18,6 @@ function(springfit_add_component component)
   target_sources(springfit_${component} INTERFACE
                  FILE_SET HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}/include" FILES ${headers})
   target_link_libraries(springfit_${component} INTERFACE ${SPRINGFIT_${component}_LINKS})
-  target_compile_definitions(springfit_${component} INTERFACE ${SPRINGFIT_${component}_DEFINITIONS})
   if(component STREQUAL "core")
     target_compile_features(springfit_core INTERFACE cxx_std_20)
   endif()

@@ -4,13 +4,6 @@
 include("${CMAKE_CURRENT_LIST_DIR}/SpringfitComponents.cmake")
 
 set(springfit_wanted core ${springfit_FIND_COMPONENTS})
-# What is compiled with CHOLMOD's factors needs them.
-if("compiled" IN_LIST springfit_wanted AND EXISTS "${CMAKE_CURRENT_LIST_DIR}/springfit-cholmod-targets.cmake")
-  list(APPEND springfit_wanted cholmod)
-  set(springfit_FIND_REQUIRED_cholmod ${springfit_FIND_REQUIRED_compiled})
-  list(REMOVE_ITEM springfit_wanted compiled)
-  list(APPEND springfit_wanted compiled)
-endif()
 list(REMOVE_DUPLICATES springfit_wanted)
 foreach(springfit_component IN LISTS springfit_wanted)
   springfit_find_component(${springfit_component})

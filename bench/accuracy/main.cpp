@@ -3,6 +3,9 @@
 #include <csignal>
 #include <iostream>
 
+#ifdef SPRINGFIT_STUDY_CHOLMOD
+#include <springfit/cholmod/supernodal_factor.hpp>
+#endif
 #ifdef SPRINGFIT_STUDY_PARALLEL
 #include <springfit/parallel/tbb.hpp>
 #endif
@@ -136,6 +139,9 @@ int main(int argc, char** argv) {
     if (const int code = read(argc, argv, arguments); code >= 0) {
         return code;
     }
+#ifdef SPRINGFIT_STUDY_CHOLMOD
+    springfit::cholmod::use_supernodal_factors();
+#endif
 #ifdef SPRINGFIT_STUDY_PARALLEL
     arguments.settings.execution = springfit::parallel::tbb();
 #endif

@@ -10,6 +10,9 @@
 #include <springfit/fit/acceleration_objective.hpp>
 #include <springfit/fit/dominant_term.hpp>
 #include <springfit/fit/exact.hpp>
+#ifdef SPRINGFIT_BENCH_CHOLMOD
+#include <springfit/cholmod/supernodal_factor.hpp>
+#endif
 #ifdef SPRINGFIT_BENCH_IPOPT
 #include <springfit/ipopt/exact.hpp>
 #endif
@@ -216,6 +219,9 @@ void add() {
 } // namespace
 
 int main(int argc, char** argv) {
+#ifdef SPRINGFIT_BENCH_CHOLMOD
+    cholmod::use_supernodal_factors();
+#endif
     add<2, double>();
     add<3, float>();
     add<3, double>();

@@ -6,9 +6,11 @@
 #include <memory>
 
 #include <springfit/fit/trajectory.hpp>
-#include <springfit/solve/detail/simplicial_factor.hpp>
 #include <springfit/solve/sparse_cholesky.hpp>
 #include <springfit/step/equilibrium.hpp>
+#ifdef SPRINGFIT_BENCH_CHOLMOD
+#include <springfit/cholmod/supernodal_factor.hpp>
+#endif
 
 #include "bodies.hpp"
 #include "run.hpp"
@@ -41,11 +43,10 @@ SparseMatrix<double> stiffness(const SpringNetwork<3, double>& network) {
     return matrix.matrix();
 }
 
-template <class Factor>
-void factor(benchmark::State& state, Index springs) {
+void factor(benchmark::State& state, Index springs, MakeSparseFactor make) {
     const auto network = bench::network<3, double>(springs);
     const SparseMatrix<double> lower = stiffness(network);
-    BasicSparseCholesky<Factor> cholesky;
+    SparseCholesky cholesky(make());
     cholesky.analyse(lower, 3);
     for (auto _ : state) {
         if (!cholesky.factorise(lower, 1e-12, 3)) {
@@ -57,19 +58,18 @@ void factor(benchmark::State& state, Index springs) {
     state.counters["entries_per_spring"] = cholesky.n_entries() / static_cast<double>(network.n_springs());
 }
 
-template <class Factor>
-void solves(benchmark::State& state, Index springs) {
+void solves(benchmark::State& state, Index springs, MakeSparseFactor make) {
     const auto network = bench::network<3, double>(springs);
     const SparseMatrix<double> lower = stiffness(network);
-    BasicSparseCholesky<Factor> cholesky;
+    SparseCholesky cholesky(make());
     if (!cholesky.factorise(lower, 1e-12, 3)) {
         state.SkipWithError("not positive definite");
         return;
     }
-    typename BasicSparseCholesky<Factor>::template Rows<n_cases> rows(lower.cols(), n_cases);
+    SparseCholesky::Rows<n_cases> rows(lower.cols(), n_cases);
     rows.setRandom();
     for (auto _ : state) {
-        cholesky.template substitute<n_cases>(rows);
+        cholesky.substitute<n_cases>(rows);
         rows *= 1 / rows.cwiseAbs().maxCoeff(); // stays in the range of numbers
     }
     bench::count(state, network.n_springs());
@@ -123,18 +123,21 @@ void match(benchmark::State& state, Index springs) {
 } // namespace
 
 int main(int argc, char** argv) {
-    const auto add_one = [](const char* what, auto function, Index springs) {
-        benchmark::RegisterBenchmark(bench::name<3, double>(what, springs).c_str(), function, springs)
+#ifdef SPRINGFIT_BENCH_CHOLMOD
+    cholmod::use_supernodal_factors();
+#endif
+    const auto add_one = [](const char* what, auto function, Index springs, auto... how) {
+        benchmark::RegisterBenchmark(bench::name<3, double>(what, springs).c_str(), function, springs, how...)
             ->Unit(benchmark::kMillisecond);
     };
     for (Index springs : {1000, 10000, 100000}) {
-#ifdef SPRINGFIT_CHOLMOD
-        add_one("supernodal_factor", factor<detail::SupernodalFactor>, springs);
-        add_one("supernodal_solves", solves<detail::SupernodalFactor>, springs);
+#ifdef SPRINGFIT_BENCH_CHOLMOD
+        add_one("supernodal_factor", factor, springs, cholmod::supernodal_factor);
+        add_one("supernodal_solves", solves, springs, cholmod::supernodal_factor);
 #endif
         if (springs <= 10000) { // a minute beyond
-            add_one("simplicial_factor", factor<detail::SimplicialFactor>, springs);
-            add_one("simplicial_solves", solves<detail::SimplicialFactor>, springs);
+            add_one("simplicial_factor", factor, springs, simplicial_factor<double>);
+            add_one("simplicial_solves", solves, springs, simplicial_factor<double>);
             add_one("match", match, springs);
         }
     }

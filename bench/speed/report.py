@@ -305,7 +305,7 @@ def page_of_matching(runs):
     return (
         "## Matching of motion\n\nMilliseconds, one thread, and in brackets the time over that of Eigen's in the same run: "
         "sparse factors of a solid network's stiffness, the solves that all cases of a block share, and iterations of "
-        "Gauss-Newton, with the factor that is linked.\n\n" + page + "\n"
+        "Gauss-Newton, with CHOLMOD's factor where it is linked.\n\n" + page + "\n"
     )
 
 

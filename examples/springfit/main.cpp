@@ -6,6 +6,9 @@
 
 #include <CLI/CLI.hpp>
 
+#ifdef SPRINGFIT_PROGRAM_CHOLMOD
+#include <springfit/cholmod/supernodal_factor.hpp>
+#endif
 #include <springfit/core/error.hpp>
 #include <springfit/core/version.hpp>
 
@@ -155,6 +158,9 @@ int main(int argc, char** argv) {
         return 2;
     }
     program::watch_for_interrupt();
+#ifdef SPRINGFIT_PROGRAM_CHOLMOD
+    springfit::cholmod::use_supernodal_factors();
+#endif
     try {
         return fit->parsed() ? program::run_fit(fit_options) : program::run_simulate(simulate_options);
     } catch (const springfit::InvalidArgument& error) {

@@ -8,17 +8,19 @@
 #include <springfit/mesh/structured.hpp>
 #include <springfit/network/forces.hpp>
 #include <springfit/network/topology.hpp>
-#include <springfit/solve/detail/simplicial_factor.hpp>
 #include <springfit/solve/sparse_cholesky.hpp>
+#include <springfit/solve/symmetric_solver.hpp>
 
 using namespace springfit;
 
 namespace {
 
-template <int Dimension, class Backend>
+template <int Dimension, MakeSparseFactor Make>
 struct Solver {
     static constexpr int dimension = Dimension;
-    using Cholesky = BasicSparseCholesky<Backend>;
+    struct Cholesky : SparseCholesky {
+        Cholesky() : SparseCholesky(Make()) {}
+    };
 };
 
 /// The stiffness of a held grid of springs, made a little stiffer by a diagonal term.
@@ -44,8 +46,8 @@ SparseMatrix<double> stiffness(int cells) {
 }
 
 #define SPRINGFIT_TEST_SOLVERS                                                                                         \
-    Solver<2, detail::SimplicialFactor>, Solver<3, detail::SimplicialFactor>, Solver<2, detail::SupernodalFactor>,     \
-        Solver<3, detail::SupernodalFactor>
+    Solver<2, simplicial_factor<double>>, Solver<3, simplicial_factor<double>>, Solver<2, cholmod::supernodal_factor>, \
+        Solver<3, cholmod::supernodal_factor>
 
 } // namespace
 
@@ -141,4 +143,37 @@ TEST_CASE_TEMPLATE("factors are found from several threads at once, with the sam
     for (const auto& x : found) {
         CHECK(x == found[0]);
     }
+}
+
+TEST_CASE("a program chooses its factors while it runs, and those that are there stay what they are") {
+    const SparseMatrix<double> lower = stiffness<3>(4);
+    const Values<double> right = Values<double>::Random(lower.cols());
+    const auto solution = [&](SparseCholesky factor) {
+        Values<double> x;
+        REQUIRE(factor.factorise(lower));
+        factor.solve(right, x);
+        return x;
+    };
+    const Values<double> of_eigen = solution(SparseCholesky(simplicial_factor()));
+    const Values<double> of_cholmod = solution(SparseCholesky(cholmod::supernodal_factor()));
+    CHECK(of_eigen != of_cholmod); // to the last bit
+    SparseCholesky before;
+    CHECK(before.relative_speed() == 1);
+    cholmod::use_supernodal_factors();
+    SparseCholesky after;
+    CHECK(after.relative_speed() > 1);
+    CHECK(solution(std::move(after)) == of_cholmod);
+    SymmetricSolver<double> solver; // compiled in a unit that knows nothing of CHOLMOD
+    REQUIRE(solver.factorise(lower));
+    CHECK(solver.apply_factor(right) == of_cholmod);
+    set_default_sparse_factor(nullptr);
+    CHECK(solution({}) == of_eigen);
+    CHECK(solution(std::move(before)) == of_eigen);
+    CHECK_THROWS_AS(SparseCholesky(nullptr), InvalidArgument);
+}
+
+TEST_CASE_TEMPLATE("a sparse factor that was not analysed holds nothing", T, SPRINGFIT_TEST_SOLVERS) {
+    const typename T::Cholesky factor;
+    CHECK(factor.n_entries() == 0);
+    CHECK(factor.flops() == 0);
 }

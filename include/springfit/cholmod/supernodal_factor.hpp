@@ -8,7 +8,7 @@
 #include <Eigen/CholmodSupport>
 
 #include <springfit/core/types.hpp>
-#include <springfit/solve/detail/supernode.hpp>
+#include <springfit/solve/sparse_factor.hpp>
 
 // Of OpenMP, which CHOLMOD's library brings along; its header would come with a compiler's flag.
 extern "C" {
@@ -16,7 +16,9 @@ int omp_get_max_active_levels();
 void omp_set_max_active_levels(int levels);
 }
 
-namespace springfit::detail {
+namespace springfit::cholmod {
+
+namespace detail {
 
 /// While it lives, one thread at a time uses CHOLMOD, and CHOLMOD one thread: a BLAS library need not be safe to call
 /// from several, and CHOLMOD's own, four whatever the machine has free, cost more in small loops than they give.
@@ -35,13 +37,13 @@ private:
 
 /// A sparse Cholesky factor that CHOLMOD finds, supernode by supernode with dense kernels from BLAS. Factorisations in
 /// several threads wait for each other.
-class SupernodalFactor {
+class SupernodalFactor final : public SparseFactor {
 public:
-    static constexpr double relative_speed = 10; ///< with a fast BLAS
+    /// With a fast BLAS.
+    [[nodiscard]] double relative_speed() const override { return 10; }
 
-    /// An order of elimination that fills little, by minimum degree or nested dissection: the node at each place.
-    /// `graph` is the lower triangle of a matrix over the nodes.
-    [[nodiscard]] static std::vector<int> order(const SparseMatrix<double>& graph) {
+    /// By minimum degree or nested dissection.
+    [[nodiscard]] std::vector<int> order(const SparseMatrix<double>& graph) const override {
         const CholmodTurn turn;
         Library library;
         library.cholmod().nmethods = 2; // the one that fills less
@@ -53,8 +55,7 @@ public:
         return {order, order + graph.cols()};
     }
 
-    /// `lower` is to be eliminated in its own order; its rows ascend in each column.
-    void analyse(const SparseMatrix<double>& lower) {
+    void analyse(const SparseMatrix<double>& lower) override {
         const CholmodTurn turn;
         m_library = std::make_unique<Library>();
         m_library->cholmod().nmethods = 1;
@@ -64,23 +65,21 @@ public:
         m_library->require_memory();
     }
 
-    /// False where a pivot is not positive.
-    [[nodiscard]] bool factorise(const SparseMatrix<double>& lower) {
+    [[nodiscard]] bool factorise(const SparseMatrix<double>& lower) override {
         const CholmodTurn turn;
         m_library->factorize(lower);
         m_library->require_memory();
         return m_library->info() == Eigen::Success;
     }
 
-    [[nodiscard]] int n_supernodes() const { return static_cast<int>(m_library->factor().nsuper); }
-
-    [[nodiscard]] Supernode supernode(int s) const {
+    [[nodiscard]] springfit::detail::Supernodes supernodes() const override {
+        if (!m_library) {
+            return {};
+        }
         const cholmod_factor& l = m_library->factor();
-        const int* first_column = static_cast<const int*>(l.super) + s;
-        const int* first_row = static_cast<const int*>(l.pi) + s;
-        return {first_column[1] - first_column[0], first_row[1] - first_row[0],
-                static_cast<const int*>(l.s) + first_row[0],
-                static_cast<const double*>(l.x) + static_cast<const int*>(l.px)[s]};
+        const auto numbers = [](const void* array) { return static_cast<const int*>(array); };
+        return {static_cast<int>(l.nsuper),     numbers(l.super), numbers(l.pi), numbers(l.px), numbers(l.s),
+                static_cast<const double*>(l.x)};
     }
 
 private:
@@ -96,4 +95,17 @@ private:
     std::unique_ptr<Library> m_library;
 };
 
-} // namespace springfit::detail
+} // namespace detail
+
+/// CHOLMOD's factor, for one `SparseCholesky`.
+[[nodiscard]] inline std::unique_ptr<SparseFactor> supernodal_factor() {
+    return std::make_unique<detail::SupernodalFactor>();
+}
+
+/// Lets every `SparseCholesky` that the program makes from here on have CHOLMOD's factors, also those within
+/// `springfit::compiled` and other units: one call at the start of `main` is for all.
+inline void use_supernodal_factors() {
+    set_default_sparse_factor(supernodal_factor);
+}
+
+} // namespace springfit::cholmod

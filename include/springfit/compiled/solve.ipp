@@ -4,7 +4,9 @@
 namespace springfit {
 
 SPRINGFIT_INSTANTIATION class SymmetricMatrix<double>;
-SPRINGFIT_INSTANTIATION class BasicSparseCholesky<detail::SparseFactor>;
+SPRINGFIT_INSTANTIATION class detail::SimplicialFactor<double>;
+SPRINGFIT_INSTANTIATION std::unique_ptr<SparseFactor> simplicial_factor<double>();
+SPRINGFIT_INSTANTIATION class BasicSparseCholesky<double>;
 SPRINGFIT_INSTANTIATION void SparseCholesky::substitute<1>(Rows<1>&) const;
 SPRINGFIT_INSTANTIATION void SparseCholesky::substitute<4>(Rows<4>&) const;
 SPRINGFIT_INSTANTIATION void SparseCholesky::substitute<8>(Rows<8>&) const;

@@ -1,28 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <concepts>
+#include <memory>
+#include <utility>
 #include <vector>
 
+#include <springfit/core/error.hpp>
 #include <springfit/core/types.hpp>
-
-#ifdef SPRINGFIT_CHOLMOD
-#include <springfit/cholmod/supernodal_factor.hpp>
-#else
-#include <springfit/solve/detail/simplicial_factor.hpp>
-#endif
+#include <springfit/solve/sparse_factor.hpp>
 
 namespace springfit {
 
 /// Sparse Cholesky factorisations L L' of symmetric positive definite matrices of one pattern.
 ///
-/// Eigen's, or CHOLMOD's in programs that link springfit::cholmod: its nested dissection fills solids less and its
-/// dense kernels are several times as fast. One factorisation at a time; once made, threads may share it.
-/// Memory: 12 bytes per entry of L, 8 with CHOLMOD.
-template <class Factor>
+/// Eigen finds the factor, or CHOLMOD in programs that call `cholmod::use_supernodal_factors()`: its nested dissection
+/// fills solids less and its dense kernels are several times as fast. One factorisation at a time; once made, threads
+/// may share it. Memory: 12 bytes per entry of L, 8 with CHOLMOD.
+template <std::same_as<double> Scalar>
 class BasicSparseCholesky {
 public:
+    /// With a factor of the program's choice at this time: `set_default_sparse_factor`.
+    BasicSparseCholesky();
+    /// With this factor: `simplicial_factor()`, `cholmod::supernodal_factor()`.
+    explicit BasicSparseCholesky(std::unique_ptr<SparseFactor> factor) : m_factor(std::move(factor)) {
+        require(m_factor != nullptr, "factor", "one to fill", "none");
+    }
+
     /// Operations of a factorisation in the time of one of Eigen's, about.
-    static constexpr double relative_speed = Factor::relative_speed;
+    [[nodiscard]] double relative_speed() const { return m_factor->relative_speed(); }
 
     /// Finds the order of elimination and the pattern of L. The unknowns come in groups of `group`, all coupled or not
     /// coupled at all, as the coordinates of nodes are: the order keeps a group together. O(entries of L) at most.
@@ -98,19 +104,10 @@ private:
     Index m_pattern_size = -1;
     std::vector<int> m_order;
     Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> m_place;
-    Factor m_factor;
+    std::unique_ptr<SparseFactor> m_factor;
 };
 
-#ifdef SPRINGFIT_CHOLMOD
-namespace detail {
-using SparseFactor = SupernodalFactor;
-}
-#else
-namespace detail {
-using SparseFactor = SimplicialFactor;
-}
-#endif
-using SparseCholesky = BasicSparseCholesky<detail::SparseFactor>;
+using SparseCholesky = BasicSparseCholesky<double>;
 
 } // namespace springfit
 

@@ -1,21 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Solves with CHOLMOD's factor, as all of the library does once the component is linked.
-#include <type_traits>
-
+// Two units of one program, of which this one alone knows CHOLMOD, share their factors.
+#include <springfit/cholmod/supernodal_factor.hpp>
 #include <springfit/solve/sparse_cholesky.hpp>
 
+using namespace springfit;
+
+// without_cholmod.cpp
+std::size_t size_elsewhere();
+SparseCholesky made_elsewhere();
+bool solves_elsewhere(SparseCholesky& factor);
+
 int main() {
-    using namespace springfit;
-    static_assert(std::is_same_v<SparseCholesky, BasicSparseCholesky<detail::SupernodalFactor>>);
-    SparseMatrix<double> lower(2, 2);
-    lower.insert(0, 0) = 2;
-    lower.insert(1, 0) = 1;
-    lower.insert(1, 1) = 2;
-    SparseCholesky factor;
-    Values<double> x;
-    if (!factor.factorise(lower)) {
+    if (size_elsewhere() != sizeof(SparseCholesky)) {
         return 1;
     }
-    factor.solve(Values<double>::Constant(2, 3), x);
-    return (x.array() - 1).abs().maxCoeff() < 1e-12 ? 0 : 1;
+    SparseCholesky of_eigen;
+    cholmod::use_supernodal_factors();
+    SparseCholesky of_cholmod;
+    SparseCholesky theirs = made_elsewhere();
+    if (of_eigen.relative_speed() != 1 || of_cholmod.relative_speed() == 1 || theirs.relative_speed() == 1) {
+        return 2;
+    }
+    return solves_elsewhere(of_eigen) && solves_elsewhere(of_cholmod) && solves_elsewhere(theirs) ? 0 : 3;
 }

@@ -60,7 +60,7 @@ public:
 
     /// Entries of the factor, and multiplications and additions that Eigen would do in the time of finding them.
     [[nodiscard]] double n_entries() const { return m_factor.n_entries(); }
-    [[nodiscard]] double flops() const { return m_factor.flops() / SparseCholesky::relative_speed; }
+    [[nodiscard]] double flops() const { return m_factor.flops() / m_factor.relative_speed(); }
 
 private:
     Unknowns m_inverse_root, m_scaled;

@@ -5,30 +5,37 @@
 
 namespace springfit {
 
-template <class Factor>
-void BasicSparseCholesky<Factor>::analyse(const SparseMatrix<double>& lower, int group) {
+template <std::same_as<double> Scalar>
+BasicSparseCholesky<Scalar>::BasicSparseCholesky() {
+    const MakeSparseFactor make = detail::default_sparse_factor;
+    m_factor = make ? make() : simplicial_factor<Scalar>();
+}
+
+template <std::same_as<double> Scalar>
+void BasicSparseCholesky<Scalar>::analyse(const SparseMatrix<double>& lower, int group) {
     m_pattern_size = lower.nonZeros();
-    m_order = Factor::order(graph_of(lower, group));
+    m_order = m_factor->order(graph_of(lower, group));
     m_place.resize(lower.cols());
     for (std::size_t p = 0; p < m_order.size(); ++p) {
         for (int d = 0; d < group; ++d) {
             m_place.indices()(group * m_order[p] + d) = group * static_cast<int>(p) + d;
         }
     }
-    m_factor.analyse(ordered(lower));
+    m_factor->analyse(ordered(lower));
 }
 
-template <class Factor>
-bool BasicSparseCholesky<Factor>::factorise(const SparseMatrix<double>& lower, double margin, int group) {
+template <std::same_as<double> Scalar>
+bool BasicSparseCholesky<Scalar>::factorise(const SparseMatrix<double>& lower, double margin, int group) {
     if (m_place.size() != lower.cols() || m_pattern_size != lower.nonZeros()) {
         analyse(lower, group);
     }
     const SparseMatrix<double> matrix = ordered(lower);
-    if (!m_factor.factorise(matrix)) {
+    if (!m_factor->factorise(matrix)) {
         return false;
     }
-    for (int s = 0; s < m_factor.n_supernodes(); ++s) {
-        const detail::Supernode node = m_factor.supernode(s);
+    const detail::Supernodes nodes = m_factor->supernodes();
+    for (int s = 0; s < nodes.size; ++s) {
+        const detail::Supernode node = nodes[s];
         for (int j = 0; j < node.width; ++j) {
             const double pivot = node.values[j * static_cast<Index>(node.height) + j];
             const double diagonal = matrix.valuePtr()[matrix.outerIndexPtr()[node.rows[j]]];
@@ -40,31 +47,33 @@ bool BasicSparseCholesky<Factor>::factorise(const SparseMatrix<double>& lower, d
     return true;
 }
 
-template <class Factor>
+template <std::same_as<double> Scalar>
 template <int Columns>
-void BasicSparseCholesky<Factor>::substitute(Rows<Columns>& rows) const {
-    for (int s = 0; s < m_factor.n_supernodes(); ++s) {
-        eliminate<Columns>(m_factor.supernode(s), rows.data());
+void BasicSparseCholesky<Scalar>::substitute(Rows<Columns>& rows) const {
+    const detail::Supernodes nodes = m_factor->supernodes();
+    for (int s = 0; s < nodes.size; ++s) {
+        eliminate<Columns>(nodes[s], rows.data());
     }
-    for (int s = m_factor.n_supernodes(); s-- > 0;) {
-        substitute_back<Columns>(m_factor.supernode(s), rows.data());
+    for (int s = nodes.size; s-- > 0;) {
+        substitute_back<Columns>(nodes[s], rows.data());
     }
 }
 
-template <class Factor>
+template <std::same_as<double> Scalar>
 template <class Visit>
-void BasicSparseCholesky<Factor>::for_columns(const Visit& visit) const {
-    for (int s = 0; s < m_factor.n_supernodes(); ++s) {
-        const detail::Supernode node = m_factor.supernode(s);
+void BasicSparseCholesky<Scalar>::for_columns(const Visit& visit) const {
+    const detail::Supernodes nodes = m_factor->supernodes();
+    for (int s = 0; s < nodes.size; ++s) {
+        const detail::Supernode node = nodes[s];
         for (int j = 0; j < node.width; ++j) {
             visit(node.rows[j], node.rows + j, node.values + j * static_cast<Index>(node.height) + j, node.height - j);
         }
     }
 }
 
-template <class Factor>
+template <std::same_as<double> Scalar>
 template <int Columns>
-void BasicSparseCholesky<Factor>::eliminate(const detail::Supernode& node, double* data) {
+void BasicSparseCholesky<Scalar>::eliminate(const detail::Supernode& node, double* data) {
     const Index height = node.height;
     const auto row = [data](Index r) { return Row<Columns>(data + r * Columns); };
     for (int j = 0; j < node.width; ++j) {
@@ -91,9 +100,9 @@ void BasicSparseCholesky<Factor>::eliminate(const detail::Supernode& node, doubl
     in_tiles(node.width, node.height, below);
 }
 
-template <class Factor>
+template <std::same_as<double> Scalar>
 template <int Columns>
-void BasicSparseCholesky<Factor>::substitute_back(const detail::Supernode& node, double* data) {
+void BasicSparseCholesky<Scalar>::substitute_back(const detail::Supernode& node, double* data) {
     const Index height = node.height;
     const auto row = [data](Index r) { return Row<Columns>(data + r * Columns); };
     const auto gather = [&]<int N>(std::integral_constant<int, N>, int first) {
@@ -120,9 +129,9 @@ void BasicSparseCholesky<Factor>::substitute_back(const detail::Supernode& node,
     }
 }
 
-template <class Factor>
+template <std::same_as<double> Scalar>
 template <class Body>
-void BasicSparseCholesky<Factor>::in_tiles(int begin, int end, const Body& body) {
+void BasicSparseCholesky<Scalar>::in_tiles(int begin, int end, const Body& body) {
     for (; begin + tile <= end; begin += tile) {
         body(std::integral_constant<int, tile>{}, begin);
     }
@@ -131,8 +140,8 @@ void BasicSparseCholesky<Factor>::in_tiles(int begin, int end, const Body& body)
     }
 }
 
-template <class Factor>
-auto BasicSparseCholesky<Factor>::graph_of(const SparseMatrix<double>& lower, int group) -> SparseMatrix<double> {
+template <std::same_as<double> Scalar>
+auto BasicSparseCholesky<Scalar>::graph_of(const SparseMatrix<double>& lower, int group) -> SparseMatrix<double> {
     const Index n = lower.cols() / group;
     std::vector<Eigen::Triplet<double>> entries;
     for (Index c = 0; c < n; ++c) {
@@ -147,14 +156,14 @@ auto BasicSparseCholesky<Factor>::graph_of(const SparseMatrix<double>& lower, in
     return graph;
 }
 
-template <class Factor>
+template <std::same_as<double> Scalar>
 template <class Term>
-double BasicSparseCholesky<Factor>::sum_over_columns(const Term& term) const {
+double BasicSparseCholesky<Scalar>::sum_over_columns(const Term& term) const {
+    const detail::Supernodes nodes = m_factor->supernodes();
     double sum = 0;
-    for (int s = 0; s < m_factor.n_supernodes(); ++s) {
-        const detail::Supernode node = m_factor.supernode(s);
-        for (int j = 0; j < node.width; ++j) {
-            sum += term(static_cast<double>(node.height - j));
+    for (int s = 0; s < nodes.size; ++s) {
+        for (int j = 0; j < nodes.width(s); ++j) {
+            sum += term(static_cast<double>(nodes.height(s) - j));
         }
     }
     return sum;
