@@ -143,60 +143,66 @@ TEST_CASE_TEMPLATE("a split keeps loads, kinds and a clamp from training", T, te
                    test::Space<3, double>) {
     constexpr int dim = T::dimension;
     const auto body = clamped_box<dim, double>();
-    const auto split = random_load_cases(
+    const auto all = random_load_cases(
         body, {.training = 18, .clamps = 3, .held_out_loads = 4, .held_out_kinds = 7, .held_out_clamp = 5, .seed = 3});
-    CHECK(split.training.size() == 18);
-    CHECK(split.held_out_loads.size() == 4);
-    CHECK(split.held_out_kinds.size() == 7);
-    CHECK(split.held_out_clamp.size() == 5);
+    const auto count = [&](CaseRole role) { return scenarios_with(all, role).size(); };
+    CHECK(count(CaseRole::training) == 18);
+    CHECK(count(CaseRole::unseen_load) == 4);
+    CHECK(count(CaseRole::unseen_kind) == 7);
+    CHECK(count(CaseRole::unseen_clamp) == 5);
 
-    const auto held = [&](const Scenario<dim, double>& scenario) { return clamped_nodes(scenario, body.n_nodes()); };
-    const auto kind = [](const Scenario<dim, double>& scenario) {
-        return scenario.name.substr(0, scenario.name.find_first_of("0123456789"));
-    };
-    std::set<std::pair<std::string, std::vector<int>>> seen;
+    const auto held = [&](const auto& load_case) { return clamped_nodes(load_case.scenario, body.n_nodes()); };
+    std::set<std::pair<LoadKind, std::vector<int>>> seen;
     std::set<std::vector<int>> clamps;
-    std::set<std::string> kinds;
+    std::set<LoadKind> kinds;
     std::set<std::string> names;
-    for (const auto& scenario : split.training) {
-        seen.insert({kind(scenario), held(scenario)});
-        clamps.insert(held(scenario));
-        kinds.insert(kind(scenario));
+    for (const auto& load_case : all) {
+        REQUIRE(load_case.kind.has_value());
+        CHECK(load_case.strain == 0);
+        CHECK(load_case.scenario.name.starts_with(to_string(*load_case.kind)));
+        if (load_case.role == CaseRole::training) {
+            seen.insert({*load_case.kind, held(load_case)});
+            clamps.insert(held(load_case));
+            kinds.insert(*load_case.kind);
+        }
     }
     CHECK(clamps.size() == 3);
     CHECK(clamps.count(body.clamps[0].nodes) == 1);
-    CHECK(kinds == std::set<std::string>{"body force ", "patch ", "pull "});
+    CHECK(kinds == std::set<LoadKind>(training_kinds.begin(), training_kinds.end()));
     CHECK(seen.size() == 9); // every kind under every clamp
-    for (const auto& scenario : split.held_out_loads) {
-        CHECK(seen.count({kind(scenario), held(scenario)}) == 1);
+    int n_unseen_kinds = 0;
+    std::set<std::vector<int>> unseen_clamps;
+    for (const auto& load_case : all) {
+        const auto& [scenario, kind, clamp_set, role, strain] = load_case;
+        CHECK((held(load_case) == body.clamps[0].nodes) == (clamp_set == 0));
+        if (role == CaseRole::unseen_load) {
+            CHECK(seen.count({*kind, held(load_case)}) == 1);
+        } else if (role == CaseRole::unseen_kind) {
+            CHECK(kinds.count(*kind) == 0);
+            CHECK(clamps.count(held(load_case)) == 1);
+            CHECK((n_unseen_kinds++ >= 5 || clamp_set == 0)); // the first five are under the body's own clamps
+        } else if (role == CaseRole::unseen_clamp) {
+            CHECK(kinds.count(*kind) == 1);
+            CHECK(clamps.count(held(load_case)) == 0);
+            unseen_clamps.insert(held(load_case));
+        }
     }
-    for (const auto& scenario : split.held_out_kinds) {
-        CHECK(kinds.count(kind(scenario)) == 0);
-        CHECK(clamps.count(held(scenario)) == 1);
-    }
-    for (std::size_t c = 0; c < 5; ++c) {
-        CHECK(held(split.held_out_kinds[c]) == body.clamps[0].nodes);
-        CHECK(held(split.held_out_clamp[c]) == held(split.held_out_clamp[0]));
-        CHECK(kinds.count(kind(split.held_out_clamp[c])) == 1);
-        CHECK(clamps.count(held(split.held_out_clamp[c])) == 0);
-    }
+    CHECK(unseen_clamps.size() == 1);
     // No two cases are the same, another seed gives others, the same seed the same.
-    const auto again = random_load_cases(body, {.seed = 3});
-    const auto other = random_load_cases(body, {.seed = 4});
     std::vector<Points<dim, double>> forces;
-    for (const auto* set : {&split.training, &split.held_out_loads, &split.held_out_kinds, &split.held_out_clamp}) {
-        for (const auto& scenario : *set) {
-            names.insert(scenario.name);
-            forces.push_back(forces_of<dim, double>(scenario, body));
-            for (std::size_t c = 0; c + 1 < forces.size(); ++c) {
-                CHECK(forces[c] != forces.back());
-            }
+    for (const auto& load_case : all) {
+        names.insert(load_case.scenario.name);
+        forces.push_back(forces_of<dim, double>(load_case.scenario, body));
+        for (std::size_t c = 0; c + 1 < forces.size(); ++c) {
+            CHECK(forces[c] != forces.back());
         }
     }
     CHECK(names.size() == forces.size());
+    const auto again = scenarios_with(random_load_cases(body, {.seed = 3}), CaseRole::training);
+    const auto other = scenarios_with(random_load_cases(body, {.seed = 4}), CaseRole::training);
     for (std::size_t c = 0; c < 18; ++c) {
-        CHECK(forces_of<dim, double>(again.training[c], body) == forces[c]);
-        CHECK(forces_of<dim, double>(other.training[c], body) != forces[c]);
+        CHECK(forces_of<dim, double>(again[c], body) == forces[c]);
+        CHECK(forces_of<dim, double>(other[c], body) != forces[c]);
     }
 }
 
@@ -205,11 +211,11 @@ TEST_CASE("a split may be plain, and its numbers are checked") {
     body.clamps[0].position = [](const Vector<2, double>& rest, double) { return rest; };
     const auto plain = random_load_cases(
         body, {.training = 2, .clamps = 1, .held_out_loads = 0, .held_out_kinds = 0, .held_out_clamp = 0});
-    CHECK(plain.training.size() == 2);
-    CHECK(plain.training[1].clamps[0].position); // moves as the body's own clamp does
-    CHECK(plain.held_out_clamp.empty());
-    body.clamps.clear(); // a body that nothing holds yet
-    CHECK(holds_rigidly(body.rest_positions, clamped_nodes(random_load_cases(body).training[0], body.n_nodes())));
+    CHECK(plain.size() == 2);
+    CHECK(plain[1].role == CaseRole::training);
+    CHECK(plain[1].scenario.clamps[0].position); // moves as the body's own clamp does
+    body.clamps.clear();                         // a body that nothing holds yet
+    CHECK(holds_rigidly(body.rest_positions, clamped_nodes(random_load_cases(body)[0].scenario, body.n_nodes())));
     CHECK_THROWS_AS((void)random_load_cases(body, {.training = 0}), InvalidArgument);
     CHECK_THROWS_AS((void)random_load_cases(body, {.clamps = 0}), InvalidArgument);
     CHECK_THROWS_AS((void)random_load_cases(body, {.held_out_loads = -1}), InvalidArgument);

@@ -65,8 +65,8 @@ TEST_CASE_TEMPLATE("cases have their roles, kinds, clamps and strains", T, test:
             CHECK(set->is_static(c) == (strain > 0));
             if (set->is_static(c)) {
                 // For a linear material the strain is what was asked for.
-                const auto found = linear_edge_strain(body.edges, body.rest_positions,
-                                                      motion.positions.front() - body.rest_positions);
+                const auto found =
+                    linear_edge_strain(body.edges, body.rest_positions, motion.positions.front() - body.rest_positions);
                 CHECK(test::relative(std::max(found.percentile_95, found.max / 4), strain, strain) < 1e-6);
                 n_small += strain < 0.01 ? 1 : 0;
             } else {

@@ -86,9 +86,10 @@ TEST_CASE_TEMPLATE("loads are scaled to the strain that is wanted", T, test::Spa
     }();
     const fem::Model model{mesh, fem::LinearElastic{1e4, 0.3}, 1000.};
     const Specimen<dim, double> body{mesh.nodes, model.masses(), boundary_nodes(mesh), {}};
-    auto split = random_load_cases(body, {.training = 6, .clamps = 2});
-    auto cases = split.training;
-    cases.insert(cases.end(), split.held_out_kinds.begin(), split.held_out_kinds.end());
+    const auto all = random_load_cases(body, {.training = 6, .clamps = 2});
+    auto cases = scenarios_with(all, CaseRole::training);
+    const auto unseen = scenarios_with(all, CaseRole::unseen_kind);
+    cases.insert(cases.end(), unseen.begin(), unseen.end());
     const NodePairs pairs = edges(mesh);
     const auto respond = [&](const auto& scenarios) { return linear_responses(model, scenarios); };
     const auto plain = cases;
@@ -125,7 +126,7 @@ TEST_CASE("a flat sheet in space answers loads in its plane as the plane body do
     const fem::Model spatial{sheet, material, 1000., {.thickness = 0.1}};
     auto body = test::sheet_body<double>();
     body.masses = spatial.masses();
-    auto cases = random_load_cases(body, {.training = 6, .clamps = 2}).training;
+    auto cases = scenarios_with(random_load_cases(body, {.training = 6, .clamps = 2}), CaseRole::training);
     const auto factors = scale_to_strain(cases, edges(sheet), sheet.nodes, 0.02,
                                          [&](const auto& scenarios) { return linear_responses(spatial, scenarios); });
     const auto recordings = record_statics(spatial, cases);
