@@ -1,0 +1,6 @@
+// refused: SpringBody<3, double> .*SpringNetwork<2, double>
+#include <springfit/step/spring_body.hpp>
+
+void wrong(const springfit::SpringNetwork<2, double>& network) {
+    springfit::SpringBody<3, double> body(network);
+}

@@ -1,0 +1,8 @@
+// refused: no matching function for call to [^ ]*acceleration_problem<2, double>
+#include <springfit/fit/acceleration_objective.hpp>
+
+using namespace springfit;
+
+void wrong(const SpringNetwork<2, double>& network, const std::vector<Motion<3, double>>& motions) {
+    (void)acceleration_problem<2, double>(network, motions);
+}
