@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
@@ -270,7 +271,8 @@ template <int Dim>
                     right(u) = 0;
                 }
             }
-            step = matrix.ldlt().solve(right);
+            step = std::move(right);
+            Eigen::LDLT<Eigen::Ref<DenseMatrix<double>>>(matrix).solveInPlace(step); // of the type in other solvers
         } else {
             step = detail::reduced_newton_step([&](const Values<double>& v) { return point->product(v); }, diagonal, mu,
                                                gradient, active, options.cg_tolerance, options.max_cg_iterations);

@@ -77,8 +77,16 @@ private:
     /// Goes to the minimiser over the free variables; false where a bound stopped it (it is then active).
     template <class Matrix, class Vector>
     bool move(const Matrix& hessian, const Vector& lower, const Vector& upper, Values<double>& x) {
-        m_block = hessian(m_free, m_free);
-        m_step = -m_gradient(m_free);
+        const auto n = static_cast<Index>(m_free.size());
+        m_block.resize(n, n);
+        m_step.resize(n);
+        for (Index q = 0; q < n; ++q) {
+            const Index j = m_free[static_cast<std::size_t>(q)];
+            m_step(q) = -m_gradient(j);
+            for (Index p = 0; p < n; ++p) {
+                m_block(p, q) = hessian(m_free[static_cast<std::size_t>(p)], j);
+            }
+        }
         Eigen::LLT<Eigen::Ref<DenseMatrix<double>>> factor(m_block);
         if (factor.info() != Eigen::Success) {
             return true; // not positive definite in this precision: stay

@@ -74,7 +74,13 @@ private:
         if (m_moving.empty()) {
             return;
         }
-        m_block = m_hessian(m_moving, m_moving);
+        const auto size = static_cast<Index>(m_moving.size());
+        m_block.resize(size, size);
+        for (Index q = 0; q < size; ++q) {
+            for (Index p = 0; p < size; ++p) {
+                m_block(p, q) = m_hessian(m_moving[static_cast<std::size_t>(p)], m_moving[static_cast<std::size_t>(q)]);
+            }
+        }
         const Eigen::LLT<Eigen::Ref<DenseMatrix<double>>> factor(m_block);
         if (factor.info() != Eigen::Success) {
             return;

@@ -91,8 +91,9 @@ private:
         for (Index p = 0; p < n; ++p) {
             position[static_cast<std::size_t>(block.columns[static_cast<std::size_t>(p)])] = static_cast<int>(p);
         }
-        block.hessian = m_objective.ridge()(block.columns).asDiagonal();
+        block.hessian.setZero(n, n);
         for (Index p = 0; p < n; ++p) {
+            block.hessian(p, p) = m_objective.ridge()(block.columns[static_cast<std::size_t>(p)]);
             for (const auto& [i, at] : m_occurrences.of(block.columns[static_cast<std::size_t>(p)])) {
                 const NodeQuadratic::Term term = m_objective.term(i);
                 for (Index q = at; q < term.size(); ++q) {
@@ -122,9 +123,15 @@ private:
             return 0;
         }
         m_step.setZero(n);
-        m_linear = -m_gradient(block.columns).cwiseQuotient(block.root);
-        m_lower = (m_problem.lower(block.columns) - m_theta(block.columns)).cwiseProduct(block.root);
-        m_upper = (m_problem.upper(block.columns) - m_theta(block.columns)).cwiseProduct(block.root);
+        m_linear.resize(n);
+        m_lower.resize(n);
+        m_upper.resize(n);
+        for (Index p = 0; p < n; ++p) {
+            const int u = block.columns[static_cast<std::size_t>(p)];
+            m_linear(p) = -m_gradient(u) / block.root(p);
+            m_lower(p) = (m_problem.lower(u) - m_theta(u)) * block.root(p);
+            m_upper(p) = (m_problem.upper(u) - m_theta(u)) * block.root(p);
+        }
         m_solver.solve(block.hessian, m_linear, m_lower, m_upper, m_step);
         const double fall = m_step.dot(m_linear - 0.5 * block.hessian * m_step);
         if (!(fall > 0)) {
