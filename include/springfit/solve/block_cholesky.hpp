@@ -14,9 +14,6 @@ using ColumnBlock = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen:
 inline constexpr int block_lanes = 4;    ///< columns that are handled at once
 inline constexpr int block_columns = 16; ///< most columns of a block
 
-/// The lanes of one row of a block.
-using ColumnLanes = Eigen::Array<double, block_lanes, 1>;
-
 /// Sparse Cholesky factor of a symmetric positive definite matrix over the free coordinates, applied to whole blocks of
 /// right-hand sides: the factor is read once for all columns. Immutable once factorised, so threads may share it.
 template <class Factor>

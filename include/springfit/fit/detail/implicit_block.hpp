@@ -1,9 +1,39 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <vector>
+
 #include <springfit/fit/detail/rotated_factor.hpp>
 
 namespace springfit::detail {
+
+template <class Block>
+Eigen::ArrayXd column_dots(const Block& a, const Block& b) {
+    return a.cwiseProduct(b).colwise().sum().transpose().array();
+}
+
+template <class Block>
+Eigen::ArrayXd column_maxima(const Block& a) {
+    return a.cwiseAbs().colwise().maxCoeff().transpose().array();
+}
+
+/// to += from diag(factors), a factor for each column.
+inline void add_scaled(const ColumnBlock& from, const Eigen::ArrayXd& factors, double sign, ColumnBlock& to) {
+    for_lanes(to, [&](Index row, Index column) {
+        lanes(to, row, column) += lanes(from, row, column) * (sign * lanes(factors, column));
+    });
+}
+
+/// Whether a value of some column is above the bound of that column.
+inline bool any_above(const Eigen::ArrayXd& values, double part, const Eigen::ArrayXd& bounds) {
+    for (Index c = 0; c < values.size(); ++c) {
+        if (values(c) > part * bounds(c)) {
+            return true;
+        }
+    }
+    return false;
+}
 
 /// What a static case or an implicit step solves for each column of a block, over the free nodes:
 ///
@@ -65,74 +95,80 @@ struct ImplicitSystem {
                                         const ColumnBlock& external) const {
         Eigen::ArrayXd energy = elastic_energy<Dim>(network, y);
         const ColumnBlock away = y - target;
-        energy -= external.cwiseProduct(away).colwise().sum().transpose().array();
+        energy -= column_dots(external, away);
         if (inertia > 0) {
             ColumnBlock force = ColumnBlock::Zero(y.rows(), y.cols());
             add_inertia(away, 0.5, force);
-            energy += force.cwiseProduct(away).colwise().sum().transpose().array();
+            energy += column_dots(force, away);
         }
         if (is_damped()) {
             const ColumnBlock moved = y - old;
             ColumnBlock force = ColumnBlock::Zero(y.rows(), y.cols());
             add_damping_product<Dim>(network, old, damping / 2, moved, force);
-            energy += force.cwiseProduct(moved).colwise().sum().transpose().array();
+            energy += column_dots(force, moved);
         }
         return energy;
     }
 };
-
-template <class Block>
-Eigen::ArrayXd column_dots(const Block& a, const Block& b) {
-    return a.cwiseProduct(b).colwise().sum().transpose().array();
-}
-
-template <class Block>
-Eigen::ArrayXd column_maxima(const Block& a) {
-    return a.cwiseAbs().colwise().maxCoeff().transpose().array();
-}
 
 /// Conjugate gradients on every column at once, until |residual| <= tolerance |right| in each. False where some column
 /// met negative curvature or did not converge; its solution is then the iterate before, a direction of descent.
 template <class Factor, class Multiply>
 bool conjugate_gradients(const Factor& factor, const Multiply& multiply, const ColumnBlock& right, double tolerance,
                          int max_iterations, ColumnBlock& solution) {
-    const Eigen::ArrayXd goal = tolerance * column_dots(right, right).sqrt();
-    solution.setZero(right.rows(), right.cols());
+    const Index n = right.cols();
+    const Eigen::ArrayXd squares = column_dots(right, right);
+    solution.setZero(right.rows(), n);
     ColumnBlock residual = right;
     ColumnBlock z;
     factor.solve(residual, z);
     ColumnBlock direction = z;
     ColumnBlock product;
     Eigen::ArrayXd rz = column_dots(residual, z);
-    Eigen::ArrayXd active = (rz > 0).cast<double>();
+    std::vector<char> active(static_cast<std::size_t>(n));
+    std::transform(rz.begin(), rz.end(), active.begin(), [](double square) { return square > 0 ? 1 : 0; });
+    const auto any_active = [&] { return std::find(active.begin(), active.end(), 1) != active.end(); };
+    Eigen::ArrayXd share(n); // of the direction: in the step, then in the next direction
     bool definite = true;
-    for (int iteration = 0; (active > 0).any(); ++iteration) {
+    for (int iteration = 0; any_active(); ++iteration) {
         if (iteration == max_iterations) {
             return false;
         }
         multiply(direction, product);
         const Eigen::ArrayXd curvature = column_dots(direction, product);
-        for (Index c = 0; c < active.size(); ++c) {
-            if (active(c) > 0 && !(curvature(c) > 0)) {
+        for (Index c = 0; c < n; ++c) {
+            char& is_active = active[static_cast<std::size_t>(c)];
+            if (is_active != 0 && !(curvature(c) > 0)) {
                 definite = false;
-                active(c) = 0;
+                is_active = 0;
                 if (iteration == 0) {
                     solution.col(c) = direction.col(c);
                 }
             }
+            share(c) = is_active != 0 ? rz(c) / curvature(c) : 0.;
         }
-        const Eigen::ArrayXd alpha = (active > 0).select(rz / curvature, 0.);
-        solution += direction * alpha.matrix().asDiagonal();
-        residual -= product * alpha.matrix().asDiagonal();
-        active *= (column_dots(residual, residual).sqrt() > goal).cast<double>();
-        if (!(active > 0).any()) {
+        add_scaled(direction, share, 1, solution);
+        add_scaled(product, share, -1, residual);
+        const Eigen::ArrayXd left = column_dots(residual, residual);
+        for (Index c = 0; c < n; ++c) {
+            if (!(std::sqrt(left(c)) > tolerance * std::sqrt(squares(c)))) {
+                active[static_cast<std::size_t>(c)] = 0;
+            }
+        }
+        if (!any_active()) {
             break;
         }
         factor.solve(residual, z);
         const Eigen::ArrayXd next = column_dots(residual, z);
-        const Eigen::ArrayXd beta = (active > 0).select(next / rz, 0.);
-        direction = z + direction * beta.matrix().asDiagonal();
-        rz = (active > 0).select(next, rz);
+        for (Index c = 0; c < n; ++c) {
+            const bool is_active = active[static_cast<std::size_t>(c)] != 0;
+            share(c) = is_active ? next(c) / rz(c) : 0.;
+            rz(c) = is_active ? next(c) : rz(c);
+        }
+        for_lanes(direction, [&](Index row, Index column) {
+            lanes(direction, row, column) =
+                lanes(z, row, column) + lanes(direction, row, column) * lanes(share, column);
+        });
     }
     return definite;
 }
@@ -151,8 +187,12 @@ bool solve_implicit(const ImplicitSystem<Dim>& system, const ColumnBlock& target
     double stiffest = system.inertia > 0 ? system.inertia * system.network.mass.maxCoeff() : 0.;
     stiffest += system.network.stiffness.maxCoeff() + system.damping * system.network.damping.maxCoeff();
     const double rounding = 64 * epsilon * stiffest * y.cwiseAbs().maxCoeff(); // some 16 springs at a node
-    const Eigen::ArrayXd largest = column_maxima(external).max(unbalanced);
-    Eigen::ArrayXd goal = (tolerance * largest).max(rounding);
+    Eigen::ArrayXd largest = column_maxima(external);
+    Eigen::ArrayXd goal = largest;
+    for (Index c = 0; c < goal.size(); ++c) {
+        largest(c) = std::max(largest(c), unbalanced(c));
+        goal(c) = std::max(tolerance * largest(c), rounding);
+    }
     bool near = true;
     Eigen::ArrayXd energy = system.energy(y, target, old, external);
     ColumnBlock direction;
@@ -160,7 +200,7 @@ bool solve_implicit(const ImplicitSystem<Dim>& system, const ColumnBlock& target
         if (!unbalanced.allFinite()) {
             return false;
         }
-        if ((unbalanced <= goal).all()) {
+        if (!any_above(unbalanced, 1, goal)) {
             return true;
         }
         const RotatedFactor<Dim> factor(system.network, system.factor, y);
@@ -170,21 +210,24 @@ bool solve_implicit(const ImplicitSystem<Dim>& system, const ColumnBlock& target
                 1e-2, 100, direction);
         };
         // Far from balance, compressed springs make the exact curvature so indefinite that its truncated step is poor.
-        near = near || (unbalanced <= 1e-2 * largest).all();
+        near = near || !any_above(unbalanced, 1e-2, largest);
         const bool definite = near && newton_step(Curvature::exact);
-        if (!definite && (unbalanced > 1e-2 * largest).any()) {
+        if (!definite && any_above(unbalanced, 1e-2, largest)) {
             near = false;
             (void)newton_step(Curvature::positive_semidefinite);
         }
         const Eigen::ArrayXd slope = column_dots(force, direction);
         const Eigen::ArrayXd norm = column_dots(force, force);
-        Eigen::ArrayXd length = (unbalanced > goal).cast<double>();
+        Eigen::ArrayXd length(goal.size());
+        std::transform(unbalanced.begin(), unbalanced.end(), goal.begin(), length.begin(),
+                       [](double force, double aim) { return force > aim ? 1. : 0.; });
         ColumnBlock trial;
         ColumnBlock trial_force;
         Eigen::ArrayXd trial_energy;
         bool accepted = false;
         for (int halving = 0; halving < 30 && !accepted; ++halving) {
-            trial = y + direction * length.matrix().asDiagonal();
+            trial = y;
+            add_scaled(direction, length, 1, trial);
             trial_energy = system.energy(trial, target, old, external);
             system.unbalanced(trial, target, old, external, trial_force);
             const Eigen::ArrayXd trial_norm = column_dots(trial_force, trial_force);
@@ -199,11 +242,14 @@ bool solve_implicit(const ImplicitSystem<Dim>& system, const ColumnBlock& target
             }
         }
         if (!accepted) { // a column at rounding, or without descent: the others go on
-            const Eigen::ArrayXd stuck = (length > 0 && length < 1e-8).cast<double>();
-            if (((stuck > 0) && (unbalanced > 1e4 * goal)).any()) {
-                return false;
+            for (Index c = 0; c < length.size(); ++c) {
+                if (length(c) > 0 && length(c) < 1e-8) { // stuck
+                    if (unbalanced(c) > 1e4 * goal(c)) {
+                        return false;
+                    }
+                    goal(c) = std::max(unbalanced(c), goal(c));
+                }
             }
-            goal = (stuck > 0).select(unbalanced.max(goal), goal);
             continue;
         }
         y.swap(trial);

@@ -56,10 +56,10 @@ public:
 private:
     using Entries = std::array<std::array<ColumnLanes, Dim>, Dim>;
 
-    Eigen::Map<ColumnLanes> entry(Index node, int a, int b, Index column) {
+    ColumnLanes& entry(Index node, int a, int b, Index column) {
         return lanes(m_rotations, Dim * Dim * node + Dim * a + b, column);
     }
-    [[nodiscard]] Eigen::Map<const ColumnLanes> entry(Index node, int a, int b, Index column) const {
+    [[nodiscard]] const ColumnLanes& entry(Index node, int a, int b, Index column) const {
         return lanes(m_rotations, Dim * Dim * node + Dim * a + b, column);
     }
 
@@ -74,7 +74,7 @@ private:
                 for (int d = 1; d < Dim; ++d) {
                     along += n(d) * spring.n[d];
                 }
-                if ((along < 1 - 0.03 * 0.03 / 2).any()) {
+                if (any_less(along, 1 - 0.03 * 0.03 / 2)) {
                     return true;
                 }
             }
@@ -94,19 +94,19 @@ private:
         if constexpr (Dim == 2) {
             const ColumnLanes c = x[0][0] + x[1][1];
             const ColumnLanes s = x[1][0] - x[0][1];
-            const ColumnLanes size = (c.square() + s.square()).sqrt();
-            good = (size > 0).template cast<double>();
+            const ColumnLanes size = sqrt(c * c + s * s);
+            good = where_less(0, size, 1, 0);
             x = {{{c / size, -s / size}, {s / size, c / size}}};
         } else {
-            ColumnLanes squares = ColumnLanes::Zero();
+            ColumnLanes squares = 0;
             for (int a = 0; a < 3; ++a) {
                 squares += dot<3>(x[a], x[a]);
             }
-            const ColumnLanes scale = (3 / squares).sqrt();
+            const ColumnLanes scale = sqrt(3 / squares);
             for (int a = 0; a < 3; ++a) {
                 x[a] = scaled<3>(scale, x[a]);
             }
-            ColumnLanes determinant = ColumnLanes::Zero();
+            ColumnLanes determinant = 0;
             for (int iteration = 0; iteration < 12; ++iteration) { // Newton's for the polar part: X <- (X + X^-T) / 2
                 const std::array<LaneVector<3>, 3> cofactors{cross(x[1], x[2]), cross(x[2], x[0]), cross(x[0], x[1])};
                 determinant = dot<3>(x[0], cofactors[0]);
@@ -116,11 +116,12 @@ private:
                     }
                 }
             }
-            good = ((determinant - 1).abs() < 1e-3).template cast<double>();
+            const ColumnLanes away = determinant - 1;
+            good = where_less(away, 1e-3, where_less(-1e-3, away, 1, 0), 0);
         }
         for (int a = 0; a < Dim; ++a) {
             for (int b = 0; b < Dim; ++b) {
-                entry(node, a, b, column) = (good > 0).select(x[a][b], ColumnLanes::Constant(a == b ? 1. : 0.));
+                entry(node, a, b, column) = where_less(0, good, x[a][b], a == b ? 1. : 0.);
             }
         }
     }
@@ -129,7 +130,7 @@ private:
         for (Index node = 0; node < in.rows() / Dim; ++node) {
             for (Index column = 0; column < in.cols(); column += block_lanes) {
                 for (int a = 0; a < Dim; ++a) {
-                    ColumnLanes sum = ColumnLanes::Zero();
+                    ColumnLanes sum = 0;
                     for (int b = 0; b < Dim; ++b) {
                         sum += (transposed ? entry(node, b, a, column) : entry(node, a, b, column)) *
                                lanes(in, Dim * node + b, column);

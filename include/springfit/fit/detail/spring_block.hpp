@@ -3,9 +3,9 @@
 
 #include <array>
 
+#include <springfit/fit/detail/column_lanes.hpp>
 #include <springfit/fit/trajectory_parameters.hpp>
 #include <springfit/network/forces.hpp>
-#include <springfit/solve/block_cholesky.hpp>
 
 /// The forces of a network and their derivatives for several motions of it at once: all blocks are over all nodes
 /// `[Dim * n_nodes x n_columns]`, one column per motion.
@@ -25,14 +25,6 @@ ColumnLanes dot(const LaneVector<Dim>& a, const LaneVector<Dim>& b) {
 
 inline LaneVector<3> cross(const LaneVector<3>& a, const LaneVector<3>& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-inline Eigen::Map<const ColumnLanes> lanes(const ColumnBlock& block, Index row, Index column) {
-    return Eigen::Map<const ColumnLanes>(block.data() + row * block.cols() + column);
-}
-
-inline Eigen::Map<ColumnLanes> lanes(ColumnBlock& block, Index row, Index column) {
-    return Eigen::Map<ColumnLanes>(block.data() + row * block.cols() + column);
 }
 
 template <int Dim>
@@ -71,8 +63,8 @@ struct SpringLanes {
 
     SpringLanes(const ColumnBlock& positions, int i, int j, Index column)
         : n(difference<Dim>(positions, j, i, column)) {
-        length = dot<Dim>(n, n).sqrt();
-        inverse_length = (length > 0).select(1 / length, ColumnLanes::Zero());
+        length = sqrt(dot<Dim>(n, n));
+        inverse_length = where_less(0, length, 1 / length, 0);
         n = scaled<Dim>(inverse_length, n);
     }
 };
@@ -95,7 +87,7 @@ struct CellLanes {
             gradient[1] = {-sides[0][1] / 2, sides[0][0] / 2};
         } else {
             for (int a = 0; a < 3; ++a) {
-                gradient[a] = scaled<3>(ColumnLanes::Constant(1. / 6), cross(sides[(a + 1) % 3], sides[(a + 2) % 3]));
+                gradient[a] = scaled<3>(1. / 6, cross(sides[(a + 1) % 3], sides[(a + 2) % 3]));
             }
         }
         volume = dot<Dim>(sides[0], gradient[0]);
@@ -174,15 +166,19 @@ void for_cells(const SpringNetwork<Dim, double>& network, const ColumnBlock& pos
 /// Elastic energy of each column [n_columns], J.
 template <int Dim>
 Eigen::ArrayXd elastic_energy(const SpringNetwork<Dim, double>& network, const ColumnBlock& positions) {
-    Eigen::ArrayXd twice = Eigen::ArrayXd::Zero(positions.cols());
+    Eigen::ArrayXd energy = Eigen::ArrayXd::Zero(positions.cols()); // twice
     for_springs<Dim>(network, positions, [&](Index e, int, int, Index column, const SpringLanes<Dim>& spring) {
-        twice.segment<block_lanes>(column) += network.stiffness(e) * (spring.length - network.rest_length(e)).square();
+        const ColumnLanes strain = spring.length - network.rest_length(e);
+        lanes(energy, column) += network.stiffness(e) * (strain * strain);
     });
     for_cells<Dim>(network, positions, [&](Index c, const auto&, Index column, const CellLanes<Dim>& cell) {
-        twice.segment<block_lanes>(column) +=
-            network.volume_stiffness(c) / network.rest_volume(c) * (cell.volume - network.rest_volume(c)).square();
+        const ColumnLanes strain = cell.volume - network.rest_volume(c);
+        lanes(energy, column) += network.volume_stiffness(c) / network.rest_volume(c) * (strain * strain);
     });
-    return twice / 2;
+    for (Index column = 0; column < energy.size(); column += block_lanes) {
+        lanes(energy, column) = lanes(energy, column) / 2;
+    }
+    return energy;
 }
 
 /// forces += minus the gradient of the elastic energy, N.
@@ -208,7 +204,7 @@ void add_stiffness_product(const SpringNetwork<Dim, double>& network, const Colu
         const auto moved = difference<Dim>(direction, j, i, column);
         ColumnLanes across = network.stiffness(e) * (1 - network.rest_length(e) * spring.inverse_length);
         if (!exact) {
-            across = across.max(0.);
+            across = where_less(across, 0, 0, across);
         }
         const ColumnLanes along = (network.stiffness(e) - across) * dot<Dim>(spring.n, moved);
         LaneVector<Dim> force;

@@ -411,15 +411,18 @@ DenseMatrix<double> TrajectoryPoint<Dim>::dense() {
             const Index before = tensions.cols();
             tensions.conservativeResize(items, before + x.cols());
             for (Index column = 0; column < x.cols(); column += block_lanes) {
+                const auto set_row = [&](Index item, const detail::ColumnLanes& tension) {
+                    for (int c = 0; c < block_lanes; ++c) {
+                        tensions(item, before + column + c) = tension(c);
+                    }
+                };
                 for (Index e = 0; e < springs; ++e) {
                     const detail::SpringLanes<Dim> spring(x, m_network.springs(0, e), m_network.springs(1, e), column);
-                    tensions.row(e).segment(before + column, block_lanes) =
-                        (slope(e) * (spring.length - m_network.rest_length(e))).matrix().transpose();
+                    set_row(e, slope(e) * (spring.length - m_network.rest_length(e)));
                 }
                 for (Index c = 0; c < m_network.n_cells(); ++c) {
                     const detail::CellLanes<Dim> cell(x, m_network.cells.col(c), column);
-                    tensions.row(springs + c).segment(before + column, block_lanes) =
-                        (slope(springs + c) * (1 - cell.volume / m_network.rest_volume(c))).matrix().transpose();
+                    set_row(springs + c, slope(springs + c) * (1 - cell.volume / m_network.rest_volume(c)));
                 }
             }
             tensions.rightCols(x.cols()) *= windows.weight.cwiseSqrt().asDiagonal();

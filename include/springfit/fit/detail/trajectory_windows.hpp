@@ -223,9 +223,11 @@ private:
     [[nodiscard]] ColumnBlock weighted(const ColumnBlock& block) const { return block * m_windows.weight.asDiagonal(); }
 
     void finish_step(const ColumnBlock& y, ColumnBlock& x, ColumnBlock& v) const {
-        const ColumnBlock moved = y - x;
-        x += moved / m_rule.alpha;
-        v += (moved / m_part - v) / m_rule.alpha;
+        for_lanes(y, [&](Index row, Index column) {
+            const ColumnLanes moved = lanes(y, row, column) - lanes(x, row, column);
+            lanes(x, row, column) += moved / m_rule.alpha;
+            lanes(v, row, column) += (moved / m_part - lanes(v, row, column)) / m_rule.alpha;
+        });
     }
 
     /// Makes the tape hold the steps of a segment, from its checkpoint.
@@ -322,20 +324,29 @@ private:
                 const ColumnBlock& x = tape.x[static_cast<std::size_t>(s)];
                 const ColumnBlock& y = tape.y[static_cast<std::size_t>(s)];
                 if (const Index step = segment * m_interval + s + 1; step % m_rule.steps_per_frame == 0) {
-                    const ColumnBlock end = x + (y - x) / alpha;
+                    ColumnBlock end = x;
+                    for_lanes(end, [&](Index row, Index column) {
+                        lanes(end, row, column) += (lanes(y, row, column) - lanes(x, row, column)) / alpha;
+                    });
                     lx += source(end, step / m_rule.steps_per_frame);
                 }
-                const ColumnBlock ly = lx / alpha + lv / (alpha * alpha * step_length);
+                ColumnBlock ly(lx.rows(), lx.cols());
+                for_lanes(ly, [&](Index row, Index column) {
+                    const ColumnLanes share = lanes(lv, row, column) / (alpha * alpha * step_length);
+                    lanes(ly, row, column) = lanes(lx, row, column) / alpha + share;
+                    lanes(lx, row, column) = lanes(lx, row, column) * (1 - 1 / alpha) - share;
+                    lanes(lv, row, column) = lanes(lv, row, column) * (1 - 1 / alpha);
+                });
                 if (!solve(y, x, ly, z)) {
                     return false;
                 }
                 add_parameter_derivative<Dim>(m_system.network, y, z, derivative);
-                lx = lx * (1 - 1 / alpha) - lv / (alpha * alpha * step_length);
-                lv *= 1 - 1 / alpha;
                 ColumnBlock inertial = ColumnBlock::Zero(x.rows(), x.cols());
                 m_system.add_inertia(z, 1, inertial);
-                lx += inertial;
-                lv += m_part * inertial;
+                for_lanes(inertial, [&](Index row, Index column) {
+                    lanes(lx, row, column) += lanes(inertial, row, column);
+                    lanes(lv, row, column) += m_part * lanes(inertial, row, column);
+                });
                 if (m_system.is_damped()) {
                     const ColumnBlock rates = m_system.damping * (y - x);
                     add_damping_parameter_derivative<Dim>(m_system.network, x, rates, z, derivative);
