@@ -79,7 +79,7 @@ void declare_fit(CLI::App& app, program::FitOptions& options) {
     add_optional(app, "--training-cases", options.training_cases, "load cases the fit sees (default 6)")->group(cases);
     add_optional(app, "--held-out-cases", options.held_out_cases, "load cases it never sees (default 3)")->group(cases);
     add_optional(app, "--static-cases", options.static_cases,
-                 "equilibria, under three clamps, that matching of motion learns from (default 24)")
+                 "equilibria, under three clamps, that matching of motion learns from (default 60)")
         ->group(cases);
     add_optional(app, "--strain", options.strain,
                  "strain that the loads of every second one, and of those that judge, aim at (default 0.05)")
