@@ -339,6 +339,39 @@ TEST_CASE("held unknowns stay, and nothing to solve is no failure") {
     CHECK(report.theta.size() == 0);
 }
 
+TEST_CASE("what is not a number is never certified") {
+    const double nan = std::nan("");
+    const Values<double> infinite = Values<double>::Constant(3, std::numeric_limits<double>::infinity());
+    const auto problem = [&](const DenseMatrix<double>& h, const Values<double>& g) {
+        return box_problem(dense(h, g, 10), -infinite, infinite, Values<double>::Ones(3));
+    };
+    const DenseMatrix<double> h = Eigen::Matrix3d::Identity();
+    const Values<double> g = Values<double>::Ones(3); // so that the start is the minimum
+    CHECK(exact(problem(h, g)).status == Status::converged);
+    CHECK(std::isnan(kkt_residual(problem(h, g), Values<double>::Constant(3, nan))));
+    for (Index u = 0; u < 3; ++u) {
+        CAPTURE(u);
+        Values<double> theta = g;
+        theta(u) = nan;
+        CHECK(std::isnan(kkt_residual(problem(h, g), theta, Values<double>::Zero(3))));
+        CHECK(std::isnan(kkt_residual(problem(h, g), g, theta)));
+        Values<double> wrong_g = g;
+        wrong_g(u) = nan;
+        DenseMatrix<double> wrong_h = h;
+        wrong_h(u, u) = nan;
+        for (const FitProblem& wrong : {problem(h, wrong_g), problem(wrong_h, g)}) {
+            CHECK(std::isnan(kkt_residual(wrong, g)));
+            for (const FitReport& report : {exact(wrong), dominant_term(wrong)}) {
+                CHECK(report.status == Status::diverged);
+                CHECK(std::isnan(report.kkt_residual));
+                CHECK(report.theta == g); // the start
+                CHECK(report.iterations == 0);
+            }
+            CHECK(one_pass(wrong).status != Status::converged);
+        }
+    }
+}
+
 TEST_CASE("a stop returns the best so far, an exception comes through, a wrong option is refused") {
     Random random(77);
     const FitProblem problem = elastic_problem<3>(4, 12, 2, 1e-2, 40, random);

@@ -164,7 +164,7 @@ double relative_error(const Parameters& parameters, ParameterKind kind, const Va
     double worst = 0;
     for (Index e = 0; e < truth.size(); ++e) {
         if (parameters.unknown(kind, e) >= 0) {
-            worst = std::max(worst, std::abs(double(found(e)) - double(truth(e))) / std::abs(double(truth(e))));
+            worst = maximum(worst, std::abs(double(found(e)) - double(truth(e))) / std::abs(double(truth(e))));
         }
     }
     return worst;

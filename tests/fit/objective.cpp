@@ -268,6 +268,12 @@ TEST_CASE_TEMPLATE("springs that never move freely have no unknown; ties give th
     CHECK(report.without_unknown.size() == 1);
     apply(problem, report, network);
     CHECK(network.stiffness(between) == 42);
+    auto smaller = network;
+    smaller.springs.conservativeResize(2, network.n_springs() - 1);
+    CHECK_THROWS_WITH_AS(
+        apply(problem, report, smaller),
+        text("network: expected ", network.n_springs(), " springs, found ", smaller.n_springs()).c_str(),
+        InvalidArgument);
 
     // One clamp that leaves both free gives the spring its unknown.
     auto other = motion;

@@ -446,3 +446,36 @@ TEST_CASE("small gains end a search only where they do not grow") {
     CHECK_FALSE(add(0.005));
     CHECK(add(0.005));
 }
+
+TEST_CASE("the largest entry of a gradient that is not a number is none") {
+    Values<double> gradient(3);
+    gradient << 3, std::nan(""), -2;
+    CHECK(std::isnan(detail::largest_projected(gradient, {false, false, false})));
+    CHECK(detail::largest_projected(gradient, {false, true, false}) == 3);
+}
+
+TEST_CASE("values are given to networks of the size that was fitted alone") {
+    const Fixture<2> fixture(true);
+    const TrajectoryProblem<2> problem(fixture.network, std::vector{fixture.static_case(0.1, 1)});
+    TrajectoryReport report;
+    report.theta = Values<double>::Zero(problem.n_unknowns());
+    auto network = fixture.network;
+    CHECK_NOTHROW(apply(problem, report, network));
+    const auto refused = [&](const SpringNetwork<2, double>& other) {
+        auto changed = other;
+        CHECK_THROWS_AS(apply(problem, report, changed), InvalidArgument);
+        CHECK(changed.stiffness == other.stiffness);
+    };
+    auto other = network;
+    other.springs.conservativeResize(2, network.n_springs() - 1);
+    other.stiffness.conservativeResize(network.n_springs() - 1);
+    refused(other);
+    other = network;
+    other.cells.resize(3, 0);
+    refused(other);
+    other = network;
+    other.rest_positions.conservativeResize(2, network.n_nodes() + 1);
+    refused(other);
+    report.theta.resize(1);
+    CHECK_THROWS_AS(apply(problem, report, network), InvalidArgument);
+}

@@ -113,6 +113,65 @@ TEST_CASE("a reference that cannot go on ends the recording with its status") {
     }
 }
 
+TEST_CASE("a reference that comes to what is not finite ends the recording with the frames before") {
+    const auto good = falling<2, double>(4);
+    for (Points<2, double> State<2, double>::* array :
+         {&State<2, double>::positions, &State<2, double>::velocities, &State<2, double>::accelerations}) {
+        for (const double wrong : {std::nan(""), double(INFINITY)}) {
+            auto reference = good;
+            reference.advance_state = [&](State<2, double>& state, const Scenario<2, double>& scenario, double dt) {
+                const Status status = good.advance_state(state, scenario, dt);
+                if (state.time > 0.25) {
+                    (state.*array)(1, 3) = wrong;
+                }
+                return status;
+            };
+            for (const int steps : {1, 3}) {
+                const auto recording =
+                    record(reference, drop<2, double>(), {.dt = 0.1, .frames = 10, .steps_per_frame = steps});
+                CHECK(recording.status == Status::diverged);
+                CHECK(recording.motion.n_frames() == (steps == 1 ? 4 : 3)); // up to 0.3, or to 0.2
+                CHECK_NOTHROW(validate(recording.motion));
+            }
+        }
+    }
+    auto reference = good;
+    reference.initial_accelerations = [](const auto& state, const auto&) {
+        return Points<2, double>::Constant(2, state.positions.cols(), std::nan("")).eval();
+    };
+    const auto recording = record(reference, drop<2, double>(), {});
+    CHECK(recording.status == Status::diverged);
+    CHECK(recording.motion.n_frames() == 0);
+    reference = good;
+    reference.node_masses(3) = std::nan(""); // and with it a node's weight
+    CHECK(record(reference, drop<2, double>(), {}).status == Status::diverged);
+}
+
+TEST_CASE("a reference that gives arrays of another size is refused by name") {
+    const auto good = falling<3, double>(4);
+    const auto refused = [](const UserReference<3, double>& reference, const char* message) {
+        CHECK_THROWS_WITH_AS((void)record(reference, drop<3, double>(), {}), message, InvalidArgument);
+    };
+    auto reference = good;
+    reference.advance_state = [&](State<3, double>& state, const Scenario<3, double>& scenario, double dt) {
+        const Status status = good.advance_state(state, scenario, dt);
+        state.positions.conservativeResize(3, state.time > 0.025 ? 5 : 4);
+        return status;
+    };
+    refused(reference, "reference: expected positions [3 x 4], found [3 x 5]");
+    reference.advance_state = [](State<3, double>& state, const Scenario<3, double>&, double) {
+        state.velocities.resize(3, 0);
+        return Status::converged;
+    };
+    refused(reference, "reference: expected velocities [3 x 4], found [3 x 0]");
+    reference = good;
+    reference.initial_accelerations = [](const auto&, const auto&) { return Points<3, double>::Zero(3, 3).eval(); };
+    refused(reference, "reference: expected accelerations [3 x 4], found [3 x 3]");
+    reference = good;
+    reference.node_masses.conservativeResize(3);
+    refused(reference, "reference: expected 4 masses, one per node, found 3");
+}
+
 TEST_CASE("options and scenarios that do not fit are refused by name") {
     const auto reference = falling<3, double>(4);
     const auto scenario = drop<3, double>();

@@ -67,6 +67,30 @@ std::vector<Scenario<Dim, double>> pushes(const Points<Dim, double>& rest, doubl
     return cases;
 }
 
+/// A program of one's own that finds these equilibria and answers.
+struct Given {
+    static constexpr int dimension = 2;
+    using Scalar = double;
+
+    Points<2, double> rest, found;
+    Values<double> node_masses;
+
+    [[nodiscard]] const Points<2, double>& rest_positions() const { return rest; }
+    [[nodiscard]] const Values<double>& masses() const { return node_masses; }
+    Status balance(const Scenario<2, double>&, double, Points<2, double>& positions) const {
+        positions = found;
+        return Status::converged;
+    }
+    Status linear_response(const Scenario<2, double>&, double, Points<2, double>& displacement) const {
+        displacement = found;
+        return Status::converged;
+    }
+};
+
+Given make_static_solver(const Given& given) {
+    return given;
+}
+
 } // namespace
 
 TEST_CASE_TEMPLATE("springs along the axes give way by F / k each", T, SPRINGFIT_TEST_SPACES) {
@@ -209,4 +233,28 @@ TEST_CASE("a body that nothing holds has no linear response, and a static case t
     scenario.clamps[0].nodes = {1000};
     CHECK_THROWS_AS((void)record_static(model, scenario), InvalidArgument);
     CHECK_THROWS_AS((void)record_statics(model, {scenario}, {.time = std::nan("")}), InvalidArgument);
+}
+
+TEST_CASE("what a reference finds that is not finite, or of another size, is no equilibrium") {
+    const Given good{Points<2, double>::Random(2, 4), Points<2, double>::Random(2, 4), Values<double>::Ones(4)};
+    const auto scenario = push<2, double>({0}, 1, {1., 0.});
+    CHECK(record_static(good, scenario).status == Status::converged);
+    CHECK(linear_responses(good, {scenario})[0] == good.found);
+    auto wrong = good;
+    wrong.found(1, 3) = std::nan("");
+    CHECK(record_static(wrong, scenario).status == Status::diverged);
+    CHECK(record_static(wrong, scenario).motion.n_frames() == 0);
+    CHECK(linear_responses(wrong, {scenario})[0].cols() == 0);
+    auto loads = scenario;
+    loads.loads[0].amplitude = [](double) { return std::nan(""); };
+    CHECK(record_static(good, loads).status == Status::diverged);
+    wrong.found.resize(2, 3);
+    wrong.found.setZero();
+    CHECK_THROWS_WITH_AS((void)record_static(wrong, scenario), "reference: expected positions [2 x 4], found [2 x 3]",
+                         InvalidArgument);
+    CHECK_THROWS_WITH_AS((void)linear_responses(wrong, {scenario}),
+                         "reference: expected a displacement [2 x 4], found [2 x 3]", InvalidArgument);
+    wrong = good;
+    wrong.node_masses.resize(2);
+    CHECK_THROWS_AS((void)record_static(wrong, scenario), InvalidArgument);
 }

@@ -191,3 +191,34 @@ TEST_CASE("nothing binds the step of a network without stiffness, and fixed node
     CHECK(std::isinf(stable_step(test::two_masses<2, double>(5, 1), {0, 1})));
     CHECK_THROWS_AS((void)stable_step(network, {2}), InvalidArgument);
 }
+
+TEST_CASE("a network that is not valid has no stable step") {
+    const auto good = test::two_masses<2, double>(5, 1);
+    const auto refused = [](const SpringNetwork<2, double>& network) {
+        CHECK_THROWS_AS((void)stable_step(network), InvalidArgument);
+        CHECK_THROWS_AS((void)stable_step_at(network, network.rest_positions), InvalidArgument);
+    };
+    for (const double mass : {0., -1., std::nan(""), double(INFINITY)}) {
+        auto network = good;
+        network.mass(1) = mass;
+        refused(network);
+    }
+    for (const int end : {-1, 0, 2}) {
+        auto network = good;
+        network.springs(1, 0) = end;
+        refused(network);
+    }
+    for (const double value : {-1., std::nan("")}) {
+        auto network = good;
+        network.stiffness(0) = value;
+        refused(network);
+        network = good;
+        network.damping(0) = value;
+        refused(network);
+    }
+    auto network = good;
+    network.mass.resize(1);
+    refused(network);
+    const Points<2, double> too_few = Points<2, double>::Zero(2, 1);
+    CHECK_THROWS_AS((void)stable_step_at(good, too_few), InvalidArgument);
+}

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include <springfit/core/maximum.hpp>
 #include <springfit/cases/load_cases.hpp>
 
 namespace springfit {
@@ -30,7 +31,7 @@ EdgeStrain<Scalar> summary(Index n_edges, const Strain& strain) {
         size(e) = std::abs(strain(e));
     }
     result.rms = size.norm() / std::sqrt(static_cast<Scalar>(n_edges));
-    result.max = size.maxCoeff();
+    result.max = max_norm(size);
     const Index rank = (19 * n_edges + 19) / 20 - 1;
     std::nth_element(size.begin(), size.begin() + rank, size.end());
     result.percentile_95 = size(rank);

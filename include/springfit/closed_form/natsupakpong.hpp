@@ -3,6 +3,7 @@
 
 #include <springfit/closed_form/detail/element_stiffness.hpp>
 #include <springfit/closed_form/detail/simplex_edges.hpp>
+#include <springfit/core/maximum.hpp>
 #include <springfit/solve/bounded_least_squares.hpp>
 
 namespace springfit {
@@ -58,7 +59,7 @@ template <int Dim, std::floating_point Scalar, CellType Cell>
         (void)least_squares.solve(hessian, Values<double>(linear / scale), lower, upper, k);
         k *= scale;
         const double missed2 = element.squaredNorm() + k.dot(hessian * k) - 2 * k.dot(linear);
-        most_missed = std::max(most_missed, std::sqrt(std::max(missed2, 0.) / element.squaredNorm()));
+        most_missed = maximum(most_missed, std::sqrt(std::max(missed2, 0.) / element.squaredNorm()));
         for (int p = 0; p < n_pairs; ++p) {
             const auto [i, j] = pair_of(p);
             const int spring = detail::spring_on_edge(lookup, corners.cells(i, c), corners.cells(j, c));

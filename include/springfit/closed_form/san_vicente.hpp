@@ -105,7 +105,7 @@ template <std::floating_point Scalar>
     for (int step = 0; step < 10; ++step) {
         (void)solver.solve(regular, Values<double>(linear + near * k), lower, upper, k);
     }
-    const double missed = std::sqrt(std::max(0., target + k.dot(hessian * k - 2 * linear)) / target);
+    const double missed = std::sqrt(maximum(0., target + k.dot(hessian * k - 2 * linear)) / target);
 
     const Scalar stiffness_of[3] = {static_cast<Scalar>(solid.young * k(0)), static_cast<Scalar>(solid.young * k(1)),
                                     static_cast<Scalar>(solid.young * k(2))};

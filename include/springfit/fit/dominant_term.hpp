@@ -42,7 +42,8 @@ template <std::same_as<FitProblem> Problem>
 
 /// The dominant-term approximation with sweeps: block descent on Phi. A block is the set of unknowns at a node; each
 /// sweep visits every block once, next always the one whose node term is largest now, and minimises Phi over it
-/// within the bounds. Phi never rises, and the sweeps converge to the exact minimiser (docs/theory.md).
+/// within the bounds. Phi never rises, and the sweeps converge to the exact minimiser (docs/theory.md). Status
+/// `diverged` where the residual is not a number.
 /// O(nodes * (unknowns at a node)^3) per sweep. Throws InvalidArgument where `initial` has the wrong size or is NaN.
 template <std::same_as<FitProblem> Problem>
 [[nodiscard]] FitReport dominant_term(const Problem& problem, const DominantTermOptions& options = {});

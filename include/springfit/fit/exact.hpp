@@ -27,11 +27,11 @@ struct ExactOptions {
 /// pull to the best point so far is added, stage after stage a smaller one (docs/theory.md).
 ///
 /// The objective is never above that of the start, and theta within the bounds to the last bit. The status is
-/// `converged` up to `tolerance`, `stalled` where rounding allows no more, or `iteration_limit`; where the callback
-/// asks to stop, the best point so far is returned with the status `interrupted`. Throws InvalidArgument for an option
-/// out of range and for an `initial` of the wrong size or not finite. Cost: some tens to hundreds of products with H,
-/// each O(nodes * (unknowns at a node)^2); memory, twice that of the problem beside it; with Cholesky, a few
-/// factorisations, O(n^2) in space.
+/// `converged` up to `tolerance`, `stalled` where rounding allows no more, `iteration_limit`, or `diverged` where the
+/// residual is not a number; where the callback asks to stop, the best point so far is returned with the status
+/// `interrupted`. Throws InvalidArgument for an option out of range and for an `initial` of the wrong size or not
+/// finite. Cost: some tens to hundreds of products with H, each O(nodes * (unknowns at a node)^2); memory, twice that
+/// of the problem beside it; with Cholesky, a few factorisations, O(n^2) in space.
 template <std::same_as<FitProblem> Problem>
 [[nodiscard]] FitReport exact(const Problem& problem, const ExactOptions& options = {});
 

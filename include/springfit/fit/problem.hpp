@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <springfit/core/maximum.hpp>
 #include <springfit/core/status.hpp>
 #include <springfit/fit/node_quadratic.hpp>
 #include <springfit/fit/parameters.hpp>
@@ -46,8 +47,8 @@ struct FitReport {
 };
 
 /// How far theta is from optimal, free of units: with x = sqrt(H_uu) theta_u and its gradient q,
-/// max |x - clip(x - q, bounds)| / max |q at theta = 0|; 0 exactly at the minimiser. `gradient` is that of Phi at
-/// theta.
+/// max |x - clip(x - q, bounds)| / max |q at theta = 0|; 0 exactly at the minimiser, NaN where anything is. `gradient`
+/// is that of Phi at theta.
 [[nodiscard]] inline double kkt_residual(const FitProblem& problem, const Values<double>& theta,
                                          const Values<double>& gradient) {
     const Values<double> curvature = problem.objective.curvature();
@@ -55,16 +56,16 @@ struct FitReport {
     double largest = 0;
     double scale = 0;
     for (Index u = 0; u < problem.n_unknowns(); ++u) {
-        if (problem.held(u) || !(curvature(u) > 0)) {
+        if (problem.held(u) || curvature(u) <= 0) {
             continue;
         }
         const double step = gradient(u) / curvature(u);
         const double moved = std::clamp(theta(u) - step, problem.lower(u), problem.upper(u));
         const double root = std::sqrt(curvature(u));
-        largest = std::max(largest, root * std::abs(theta(u) - moved));
-        scale = std::max(scale, std::abs(linear(u)) / root);
+        largest = maximum(largest, root * std::abs(theta(u) - moved));
+        scale = maximum(scale, std::abs(linear(u)) / root);
     }
-    return scale > 0 ? largest / scale : largest;
+    return scale == 0 ? largest : largest / scale;
 }
 
 [[nodiscard]] inline double kkt_residual(const FitProblem& problem, const Values<double>& theta) {
@@ -102,7 +103,7 @@ inline void complete(const FitProblem& problem, FitReport& report) {
 /// Writes fitted values into the network that the problem was made from; what was not fitted stays.
 ///
 /// A fitted preload moves the rest length to l = l^0 + q / k. Where k is 0 or l would not be positive, no rest length
-/// can express q, and l^0 stays.
+/// can express q, and l^0 stays. Throws InvalidArgument unless the network has as many springs as that one.
 template <int Dim, std::floating_point Scalar>
 void apply(const FitProblem& problem, const Values<double>& theta, SpringNetwork<Dim, Scalar>& network) {
     const Parameters& parameters = problem.parameters;

@@ -6,6 +6,7 @@
 
 #include <Eigen/Cholesky>
 
+#include <springfit/core/maximum.hpp>
 #include <springfit/core/progress.hpp>
 #include <springfit/fit/trajectory_problem.hpp>
 
@@ -116,10 +117,11 @@ inline void limit(Values<double>& step, double most) {
     step = step.cwiseMax(-most).cwiseMin(most);
 }
 
+/// NaN where an entry is.
 inline double largest_projected(const Values<double>& gradient, const std::vector<bool>& active) {
     double largest = 0;
     for (Index u = 0; u < gradient.size(); ++u) {
-        largest = std::max(largest, active[static_cast<std::size_t>(u)] ? 0. : std::abs(gradient(u)));
+        largest = maximum(largest, active[static_cast<std::size_t>(u)] ? 0. : std::abs(gradient(u)));
     }
     return largest;
 }
@@ -290,7 +292,7 @@ template <int Dim>
                 break;
             }
             mu = std::max(8 * mu, 0.05 * diagonal.maxCoeff() / 8);
-            if (mu > 1e8 * diagonal.maxCoeff() || step.cwiseAbs().maxCoeff() < 1e-10) {
+            if (!(mu <= 1e8 * diagonal.maxCoeff()) || step.cwiseAbs().maxCoeff() < 1e-10) {
                 report.status = Status::stalled;
                 break;
             }
@@ -313,10 +315,15 @@ template <int Dim>
     return report;
 }
 
-/// Gives a network the values that a trajectory fit found; in its own scalar.
+/// Gives a network the values that a trajectory fit found; in its own scalar. Throws InvalidArgument unless the network
+/// has as many nodes, springs and cells as the one that the problem was made from.
 template <int Dim, std::floating_point Scalar>
 void apply(const TrajectoryProblem<Dim>& problem, const TrajectoryReport& report, SpringNetwork<Dim, Scalar>& network) {
     const SpringNetwork<Dim, double> fitted = problem.parameters().network(report.theta);
+    const auto size = [](const auto& any) {
+        return text(any.n_nodes(), " nodes, ", any.n_springs(), " springs and ", any.n_cells(), " cells");
+    };
+    require(size(network) == size(fitted), "network", size(fitted), size(network));
     network.stiffness = fitted.stiffness.template cast<Scalar>();
     network.damping = fitted.damping.template cast<Scalar>();
     network.rest_length = fitted.rest_length.template cast<Scalar>();

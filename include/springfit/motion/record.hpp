@@ -21,7 +21,35 @@ struct Recording {
     Status status = Status::converged; ///< `converged`, `interrupted`, or why the stepper could not go on
 };
 
-/// Records the motion of a stepper under a scenario. Throws InvalidArgument for a scenario that does not fit the body.
+namespace detail {
+
+/// Throws InvalidArgument unless what a reference gave for its nodes has a column for each.
+template <int Dim, std::floating_point Scalar>
+void check_nodes(const Points<Dim, Scalar>& found, std::string_view what, Index n_nodes) {
+    require(found.cols() == n_nodes, "reference", text(what, " [", Dim, " x ", n_nodes, "]"),
+            text("[", Dim, " x ", found.cols(), "]"));
+}
+
+/// The same for all of a state; true where it is finite.
+template <int Dim, std::floating_point Scalar>
+bool check_state(const State<Dim, Scalar>& state, Index n_nodes) {
+    check_nodes<Dim, Scalar>(state.positions, "positions", n_nodes);
+    check_nodes<Dim, Scalar>(state.velocities, "velocities", n_nodes);
+    check_nodes<Dim, Scalar>(state.accelerations, "accelerations", n_nodes);
+    return std::isfinite(state.time) && state.positions.allFinite() && state.velocities.allFinite() &&
+           state.accelerations.allFinite();
+}
+
+template <std::floating_point Scalar>
+void check_masses(const Values<Scalar>& masses, Index n_nodes) {
+    require(masses.size() == n_nodes, "reference", text(n_nodes, " masses, one per node"), masses.size());
+}
+
+} // namespace detail
+
+/// Records the motion of a stepper under a scenario. Status `diverged`, with the frames before, where the stepper comes
+/// to a state, or the loads to forces, that are not finite. Throws InvalidArgument for a scenario that does not fit the
+/// body, and for a state or masses of another number of nodes.
 template <Stepper S>
 [[nodiscard]] auto record_stepper(S& stepper, const Scenario<S::dimension, typename S::Scalar>& scenario,
                                   const RecordOptions<typename S::Scalar>& options) {
@@ -36,21 +64,35 @@ template <Stepper S>
     motion.rest_positions = stepper.rest_positions();
     validate(scenario, motion.n_nodes());
     motion.clamped = clamped_nodes(scenario, motion.n_nodes());
+    detail::check_masses<Scalar>(stepper.masses(), motion.n_nodes());
 
     const Scalar step = options.dt / static_cast<Scalar>(options.steps_per_frame);
     auto state = stepper.start(scenario);
+    if (!detail::check_state<S::dimension, Scalar>(state, motion.n_nodes())) {
+        recording.status = Status::diverged;
+        return recording;
+    }
     for (int frame = 0; frame < options.frames; ++frame) {
         for (int s = 0; frame > 0 && s < options.steps_per_frame; ++s) {
             recording.status = stepper.advance(state, scenario, step);
+            if (recording.status == Status::converged &&
+                !detail::check_state<S::dimension, Scalar>(state, motion.n_nodes())) {
+                recording.status = Status::diverged;
+            }
             if (recording.status != Status::converged) {
                 return recording;
             }
+        }
+        auto external = external_forces<S::dimension, Scalar>(scenario, stepper.masses(), state.time);
+        if (!external.allFinite()) {
+            recording.status = Status::diverged;
+            return recording;
         }
         motion.times.push_back(state.time);
         motion.positions.push_back(state.positions);
         motion.velocities.push_back(state.velocities);
         motion.accelerations.push_back(state.accelerations);
-        motion.external_forces.push_back(external_forces<S::dimension, Scalar>(scenario, stepper.masses(), state.time));
+        motion.external_forces.push_back(std::move(external));
         if (!go_on(options.progress, "record", static_cast<double>(frame + 1) / options.frames)) {
             recording.status = Status::interrupted;
             return recording;

@@ -94,8 +94,9 @@ void for_static_cases(const R& reference, const std::vector<Scenario<R::dimensio
 /// The equilibria of a reference under many load cases, each as a motion of one frame at rest at `options.time`.
 ///
 /// Load cases may have different clamps; those that share them share a solver. A case that finds no equilibrium, or is
-/// not reached before an interruption, has no frame, and its status says why. The results do not depend on the
-/// execution. Throws InvalidArgument for a scenario that does not fit the body.
+/// not reached before an interruption, has no frame, and its status says why: `diverged` where the reference found
+/// positions, or the loads are forces, that are not finite. The results do not depend on the execution. Throws
+/// InvalidArgument for a scenario that does not fit the body, and for positions or masses of another number of nodes.
 template <StaticReference R>
 [[nodiscard]] std::vector<Recording<R::dimension, typename R::Scalar>>
 record_statics(const R& reference, const std::vector<Scenario<R::dimension, typename R::Scalar>>& scenarios,
@@ -112,13 +113,20 @@ record_statics(const R& reference, const std::vector<Scenario<R::dimension, type
         motion.rest_positions = solver.rest_positions();
         motion.clamped = clamped_nodes(scenarios[c], motion.n_nodes());
         Points<dim, Scalar> positions;
+        Points<dim, Scalar> external;
         status = solver.balance(scenarios[c], options.time, positions);
+        if (status == Status::converged) {
+            detail::check_nodes<dim, Scalar>(positions, "positions", motion.n_nodes());
+            detail::check_masses<Scalar>(solver.masses(), motion.n_nodes());
+            external = external_forces<dim, Scalar>(scenarios[c], solver.masses(), options.time);
+            status = positions.allFinite() && external.allFinite() ? status : Status::diverged;
+        }
         if (status == Status::converged) {
             motion.times = {options.time};
             motion.velocities = {Points<dim, Scalar>::Zero(dim, motion.n_nodes())};
             motion.accelerations = motion.velocities;
             motion.positions = {std::move(positions)};
-            motion.external_forces = {external_forces<dim, Scalar>(scenarios[c], solver.masses(), options.time)};
+            motion.external_forces = {std::move(external)};
         }
     });
     return recordings;
@@ -133,7 +141,8 @@ record_static(const R& reference, const Scenario<R::dimension, typename R::Scala
 }
 
 /// What small loads would do, K u = f_ext with K at the rest positions: the displacement of each case `[Dim x
-/// n_nodes]`, m; empty where the clamps do not hold the body, and where an interruption came first.
+/// n_nodes]`, m; empty where the clamps do not hold the body, where it is not finite, and where an interruption came
+/// first. Throws as `record_statics` does.
 template <StaticReference R>
 [[nodiscard]] std::vector<Points<R::dimension, typename R::Scalar>>
 linear_responses(const R& reference, const std::vector<Scenario<R::dimension, typename R::Scalar>>& scenarios,
@@ -141,6 +150,12 @@ linear_responses(const R& reference, const std::vector<Scenario<R::dimension, ty
     std::vector<Points<R::dimension, typename R::Scalar>> responses(scenarios.size());
     detail::for_static_cases(reference, scenarios, options, "linear responses", [&](auto& solver, std::size_t c) {
         if (solver.linear_response(scenarios[c], options.time, responses[c]) != Status::converged) {
+            responses[c].resize(R::dimension, 0);
+            return;
+        }
+        detail::check_nodes<R::dimension, typename R::Scalar>(responses[c], "a displacement",
+                                                              solver.rest_positions().cols());
+        if (!responses[c].allFinite()) {
             responses[c].resize(R::dimension, 0);
         }
     });

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include <springfit/core/maximum.hpp>
 #include <springfit/core/status.hpp>
 #include <springfit/solve/symmetric_solver.hpp>
 
@@ -61,13 +62,10 @@ template <SmoothProblem P, class Solver>
             return Scalar(0);
         }
     };
-    const auto largest = [](const Values<Scalar>& values) {
-        return values.size() > 0 ? values.template lpNorm<Eigen::Infinity>() : Scalar(0);
-    };
 
     report.energy = problem.energy(x);
     problem.gradient(x, gradient);
-    report.gradient_max = largest(gradient);
+    report.gradient_max = max_norm(gradient);
     if (!std::isfinite(report.energy) || !gradient.allFinite()) {
         report.status = Status::diverged;
         return report;
@@ -110,7 +108,7 @@ template <SmoothProblem P, class Solver>
                 continue;
             }
             problem.gradient(trial, trial_gradient);
-            const Scalar trial_max = largest(trial_gradient);
+            const Scalar trial_max = max_norm(trial_gradient);
             if (std::isfinite(trial_max) && (falls || trial_max < report.gradient_max)) {
                 accepted = true;
                 n_creeping = !falls && trial_max > report.gradient_max / 2 ? n_creeping + 1 : 0;

@@ -8,30 +8,12 @@
 
 namespace springfit {
 
-/// A time step, s, below which the explicit step of a network is stable at `positions` `[Dim x n_nodes]`; no
-/// eigensolver.
-///
-/// With d_i the sum of k and g_i the sum of c over the springs at node i, and for each spring (i, j)
-///
-///     a = d_i / m_i + d_j / m_j ,   b = g_i / m_i + g_j / m_j ,   h_ij = 2 / (b/2 + sqrt(b^2/4 + a)) ,
-///
-/// the step is the least h_ij. It follows from the condition of the explicit step with damping at the old velocity,
-/// M - h/2 C - h^2/4 K positive definite: K and C are bounded by the graph Laplacians with weights k and c, since
-/// k n n' + k (1 - l/L) (I - n n') <= k I, and those by the row sums of their edge form. Without damping this is
-/// 2 / sqrt(max a). For a spring alone it is exact; in meshes the true limit is up to about twice as long. Springs
-/// hold this at every deformation.
-///
-/// A cell of kappa > 0 with w_a = |dV/dx_a| and w = sum_a w_a / 2 (so that it counts as two ends) adds kappa / V_c w_a
-/// w to d_a and is one more row, a = sum_a w_a / w d_a / m_a, b = sum_a w_a / w g_a / m_a. Away from its rest volume
-/// the second derivative of V adds max_i p_i / m_i to every a, p_i the sum over the cells at i of |kappa (V - V_c) /
-/// V_c| sum_b |d^2 V / dx_i dx_b|. For one cell at rest it is exact; the cells' part grows with the deformation, as
-/// that of the springs does not.
-///
-/// The ends in `fixed` do not move: their d / m and g / m count as 0. Infinite where nothing binds the step.
-/// O(springs + cells).
+namespace detail {
+
+/// As `stable_step_at`, of a network that is known to be valid, in loops.
 template <int Dim, std::floating_point Scalar>
-[[nodiscard]] Scalar stable_step_at(const SpringNetwork<Dim, Scalar>& network, const Points<Dim, Scalar>& positions,
-                                    const std::vector<int>& fixed = {}) {
+[[nodiscard]] Scalar stable_step_unchecked(const SpringNetwork<Dim, Scalar>& network,
+                                           const Points<Dim, Scalar>& positions, const std::vector<int>& fixed = {}) {
     Values<Scalar> inverse_mass = network.mass.cwiseInverse();
     for (int node : fixed) {
         require(node >= 0 && node < network.n_nodes(), "fixed", text("node numbers in [0, ", network.n_nodes(), ")"),
@@ -93,6 +75,39 @@ template <int Dim, std::floating_point Scalar>
         }
     }
     return step;
+}
+
+} // namespace detail
+
+/// A time step, s, below which the explicit step of a network is stable at `positions` `[Dim x n_nodes]`; no
+/// eigensolver.
+///
+/// With d_i the sum of k and g_i the sum of c over the springs at node i, and for each spring (i, j)
+///
+///     a = d_i / m_i + d_j / m_j ,   b = g_i / m_i + g_j / m_j ,   h_ij = 2 / (b/2 + sqrt(b^2/4 + a)) ,
+///
+/// the step is the least h_ij. It follows from the condition of the explicit step with damping at the old velocity,
+/// M - h/2 C - h^2/4 K positive definite: K and C are bounded by the graph Laplacians with weights k and c, since
+/// k n n' + k (1 - l/L) (I - n n') <= k I, and those by the row sums of their edge form. Without damping this is
+/// 2 / sqrt(max a). For a spring alone it is exact; in meshes the true limit is up to about twice as long. Springs
+/// hold this at every deformation.
+///
+/// A cell of kappa > 0 with w_a = |dV/dx_a| and w = sum_a w_a / 2 (so that it counts as two ends) adds kappa / V_c w_a
+/// w to d_a and is one more row, a = sum_a w_a / w d_a / m_a, b = sum_a w_a / w g_a / m_a. Away from its rest volume
+/// the second derivative of V adds max_i p_i / m_i to every a, p_i the sum over the cells at i of |kappa (V - V_c) /
+/// V_c| sum_b |d^2 V / dx_i dx_b|. For one cell at rest it is exact; the cells' part grows with the deformation, as
+/// that of the springs does not.
+///
+/// The ends in `fixed` do not move: their d / m and g / m count as 0. Infinite where nothing binds the step. Throws
+/// InvalidArgument for a network that is not valid, and for positions or fixed nodes that do not fit it.
+/// O(springs + cells).
+template <int Dim, std::floating_point Scalar>
+[[nodiscard]] Scalar stable_step_at(const SpringNetwork<Dim, Scalar>& network, const Points<Dim, Scalar>& positions,
+                                    const std::vector<int>& fixed = {}) {
+    validate(network);
+    require(positions.cols() == network.n_nodes(), "positions", text(network.n_nodes(), " columns, one per node"),
+            positions.cols());
+    return detail::stable_step_unchecked<Dim, Scalar>(network, positions, fixed);
 }
 
 /// The stable step in the rest positions: for a network of springs alone that at every deformation.

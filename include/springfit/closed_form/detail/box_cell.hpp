@@ -2,6 +2,7 @@
 #pragma once
 
 #include <springfit/closed_form/detail/simplex_edges.hpp>
+#include <springfit/core/maximum.hpp>
 
 namespace springfit::detail {
 
@@ -24,7 +25,7 @@ Vector<Cell::dimension, Scalar> box_sides(const Mesh<Dim, Scalar, Cell>& mesh, I
     Scalar skew = 0; // relative to the sides
     for (int k = 0; k < d; ++k) {
         for (int l = 0; l < k; ++l) {
-            skew = std::max(skew, std::abs(axes.col(k).dot(axes.col(l))) / (sides(k) * sides(l)));
+            skew = maximum(skew, std::abs(axes.col(k).dot(axes.col(l))) / (sides(k) * sides(l)));
         }
     }
     for (int a = 0; a < Cell::n_corners; ++a) {
@@ -32,7 +33,7 @@ Vector<Cell::dimension, Scalar> box_sides(const Mesh<Dim, Scalar, Cell>& mesh, I
         for (int k = 0; k < d; ++k) {
             away -= static_cast<Scalar>(steps[a][k]) * axes.col(k);
         }
-        skew = std::max(skew, away.norm() / sides.minCoeff());
+        skew = maximum(skew, away.norm() / sides.minCoeff());
     }
     if (!(skew < Scalar(exactness))) {
         throw InvalidArgument("mesh",

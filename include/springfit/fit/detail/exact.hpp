@@ -24,10 +24,10 @@ public:
         m_weight = Unknowns::Zero(n);
         for (Index u = 0; u < n; ++u) {
             if (moves(u)) {
-                m_scale = std::max(m_scale, std::abs(m_linear(u)) / std::sqrt(m_curvature(u)));
+                m_scale = maximum(m_scale, std::abs(m_linear(u)) / std::sqrt(m_curvature(u)));
             }
         }
-        m_scale = m_scale > 0 ? m_scale : 1;
+        m_scale = m_scale == 0 ? 1 : m_scale;
         refresh();
     }
 
@@ -37,8 +37,10 @@ public:
         m_best = m_start_value = value();
         m_best_theta = m_theta;
         m_best_residual = m_first_residual = m_residual = residual();
-        report.status = m_residual <= m_options.tolerance ? Status::converged : Status::iteration_limit;
-        if (report.status != Status::converged) {
+        report.status = std::isnan(m_residual)              ? Status::diverged
+                        : m_residual <= m_options.tolerance ? Status::converged
+                                                            : Status::iteration_limit;
+        if (report.status == Status::iteration_limit) {
             choose_sides();
         }
         while (report.status == Status::iteration_limit && report.iterations < m_options.max_iterations) {
@@ -94,7 +96,7 @@ private:
             if (moves(u)) {
                 const double moved =
                     std::clamp(m_theta(u) - gradient(u) / m_curvature(u), m_problem.lower(u), m_problem.upper(u));
-                largest = std::max(largest, std::sqrt(m_curvature(u)) * std::abs(m_theta(u) - moved));
+                largest = maximum(largest, std::sqrt(m_curvature(u)) * std::abs(m_theta(u) - moved));
             }
         }
         return largest / m_scale;
@@ -163,6 +165,9 @@ private:
         if (now <= m_options.tolerance) {
             refresh();
             now = residual();
+        }
+        if (std::isnan(now)) {
+            return Status::diverged;
         }
         keep_better(now);
         const bool settled = m_changes == 0 && now > 0.5 * m_residual;
@@ -257,8 +262,8 @@ FitReport exact(const Problem& problem, const ExactOptions& options) {
         report.theta = start;
         complete(problem, report);
     }
-    if (report.status == Status::converged && report.kkt_residual > options.tolerance) {
-        report.status = Status::stalled;
+    if (report.status == Status::converged && !(report.kkt_residual <= options.tolerance)) {
+        report.status = std::isnan(report.kkt_residual) ? Status::diverged : Status::stalled;
     }
     report.seconds = watch.seconds();
     return report;

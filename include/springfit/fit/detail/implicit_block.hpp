@@ -197,7 +197,7 @@ bool solve_implicit(const ImplicitSystem<Dim>& system, const ColumnBlock& target
     Eigen::ArrayXd energy = system.energy(y, target, old, external);
     ColumnBlock direction;
     for (int iteration = 0; iteration < max_iterations; ++iteration) {
-        if (!unbalanced.allFinite()) {
+        if (!force.allFinite()) { // the largest entries may have dropped a NaN
             return false;
         }
         if (!any_above(unbalanced, 1, goal)) {

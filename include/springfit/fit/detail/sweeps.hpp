@@ -202,7 +202,8 @@ typename Problem::Unknowns sweep_start(const Problem& problem, const DominantTer
     }
     const typename Problem::Unknowns estimate = one_pass_values(problem, options.execution);
     const bool keep_given =
-        options.start == SweepStart::better && problem.objective.value(given) < problem.objective.value(estimate);
+        !estimate.allFinite() ||
+        (options.start == SweepStart::better && problem.objective.value(given) < problem.objective.value(estimate));
     return keep_given ? given : estimate;
 }
 
@@ -216,16 +217,16 @@ FitReport dominant_term(const Problem& problem, const DominantTermOptions& optio
     FitReport report;
     report.theta = detail::sweep_start(problem, options);
     report.objective_start = problem.objective.value(report.theta);
-    report.status = Status::iteration_limit;
     detail::BlockDescent descent(problem, report.theta);
     double value = report.objective_start;
     double residual = kkt_residual(problem, report.theta);
+    report.status = std::isnan(residual) ? Status::diverged : Status::iteration_limit;
     double lowest = residual;
     int idle = 0;               // sweeps since the residual was lowest
     constexpr int patience = 5; // of them, while Phi stands still, before giving up
     const double rounding =
         std::numeric_limits<double>::epsilon() * problem.objective.value(Problem::Unknowns::Zero(problem.n_unknowns()));
-    while (true) {
+    while (report.status != Status::diverged) {
         if (residual <= options.tolerance) {
             report.status = Status::converged;
             break;
@@ -235,6 +236,10 @@ FitReport dominant_term(const Problem& problem, const DominantTermOptions& optio
         }
         const double fall = descent.sweep();
         const double next = kkt_residual(problem, descent.theta());
+        if (std::isnan(next)) {
+            report.status = Status::diverged;
+            break;
+        }
         idle = next < lowest ? 0 : idle + 1;
         lowest = std::min(lowest, next);
         if (fall <= rounding && idle == patience) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <springfit/core/maximum.hpp>
 #include <springfit/ipopt/detail/scaled_quadratic.hpp>
 
 namespace springfit::ipopt::detail {
@@ -43,8 +44,10 @@ private:
     static constexpr int max_iterations = 1000;
 
     [[nodiscard]] double residual(const Values<double>& x, const Values<double>& gradient) const {
-        const Values<double> moved = (x - gradient).cwiseMax(m_problem.lower).cwiseMin(m_problem.upper);
-        return (x - moved).cwiseAbs().maxCoeff();
+        const Values<double> moved = (x - gradient)
+                                         .template cwiseMax<Eigen::PropagateNaN>(m_problem.lower)
+                                         .template cwiseMin<Eigen::PropagateNaN>(m_problem.upper);
+        return max_norm(x - moved);
     }
 
     /// -1 on the lower bound, 1 on the upper, 0 free.

@@ -21,7 +21,8 @@ Status SymplecticEuler<Dim, Scalar>::advance(State<Dim, Scalar>& state, const Sc
     require(dt > 0 && std::isfinite(dt), "dt", "a positive time step", dt);
     Scalar longest = m_longest_substep;
     if (m_network.n_cells() > 0) {
-        longest = std::min(longest, m_options.step_fraction * stable_step_at<Dim, Scalar>(m_network, state.positions));
+        longest = std::min(longest, m_options.step_fraction *
+                                        detail::stable_step_unchecked<Dim, Scalar>(m_network, state.positions));
     }
     const int substeps = n_substeps(dt, longest);
     if (substeps > m_options.max_substeps) {
