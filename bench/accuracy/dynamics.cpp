@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <numbers>
 
-#include <springfit/score/simulate.hpp>
+#include <springfit/simulate/simulate.hpp>
 
 #include "solid.hpp"
 #include "svg.hpp"

@@ -6,8 +6,8 @@
 #include <springfit/motion/replay.hpp>
 #include <springfit/network/topology.hpp>
 #include <springfit/score/frequency.hpp>
-#include <springfit/score/simulate.hpp>
-#include <springfit/step/static_solver.hpp>
+#include <springfit/simulate/simulate.hpp>
+#include <springfit/simulate/static_solver.hpp>
 
 #include "trial.hpp"
 

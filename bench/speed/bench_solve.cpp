@@ -6,8 +6,8 @@
 #include <memory>
 
 #include <springfit/fit/trajectory.hpp>
+#include <springfit/simulate/equilibrium.hpp>
 #include <springfit/solve/sparse_cholesky.hpp>
-#include <springfit/step/equilibrium.hpp>
 #ifdef SPRINGFIT_BENCH_CHOLMOD
 #include <springfit/cholmod/supernodal_factor.hpp>
 #endif

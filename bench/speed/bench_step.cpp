@@ -7,9 +7,9 @@
 #ifdef SPRINGFIT_BENCH_PARALLEL
 #include <springfit/parallel/tbb.hpp>
 #endif
-#include <springfit/step/implicit_body.hpp>
-#include <springfit/step/projective_body.hpp>
-#include <springfit/step/spring_batch.hpp>
+#include <springfit/body/implicit_body.hpp>
+#include <springfit/body/projective_body.hpp>
+#include <springfit/body/spring_batch.hpp>
 
 #include "run.hpp"
 #include "steps.hpp"

@@ -2,7 +2,7 @@
 // One time step of springfit, of a plain loop and of other programs that are installed, on the same bodies in one run.
 // All of one size follow one another, so that their ratios do not suffer from a machine that changes its speed.
 
-#include <springfit/step/implicit_body.hpp>
+#include <springfit/body/implicit_body.hpp>
 
 #include "peers/peers.hpp"
 #include "run.hpp"

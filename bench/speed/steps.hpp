@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <springfit/step/spring_body.hpp>
-#include <springfit/step/stable_step.hpp>
+#include <springfit/body/spring_body.hpp>
+#include <springfit/simulate/stable_step.hpp>
 
 #include "bodies.hpp"
 

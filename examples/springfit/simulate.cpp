@@ -6,9 +6,9 @@
 #include <springfit/io/model_json.hpp>
 #include <springfit/io/motion_file.hpp>
 #include <springfit/motion/record.hpp>
-#include <springfit/step/implicit_euler.hpp>
-#include <springfit/step/projective_euler.hpp>
-#include <springfit/step/symplectic_euler.hpp>
+#include <springfit/simulate/implicit_euler.hpp>
+#include <springfit/simulate/projective_euler.hpp>
+#include <springfit/simulate/symplectic_euler.hpp>
 
 #include "commands.hpp"
 #include "terminal.hpp"

@@ -4,6 +4,9 @@
 /// Everything that needs Eigen alone. Meshing (`cgal/`), Ipopt (`ipopt/`), files (`io/`) and threads
 /// (`parallel/`) are included one by one.
 
+#include <springfit/body/implicit_body.hpp>
+#include <springfit/body/spring_batch.hpp>
+#include <springfit/body/spring_body.hpp>
 #include <springfit/calibrate/calibrate.hpp>
 #include <springfit/cases/load_cases.hpp>
 #include <springfit/cases/noise.hpp>
@@ -31,15 +34,12 @@
 #include <springfit/score/embedded_error.hpp>
 #include <springfit/score/frequency.hpp>
 #include <springfit/score/motion_error.hpp>
+#include <springfit/simulate/biquadratic_equilibrium.hpp>
+#include <springfit/simulate/biquadratic_euler.hpp>
+#include <springfit/simulate/equilibrium.hpp>
+#include <springfit/simulate/implicit_euler.hpp>
+#include <springfit/simulate/projective_euler.hpp>
+#include <springfit/simulate/static_solver.hpp>
+#include <springfit/simulate/symplectic_euler.hpp>
 #include <springfit/solve/clique_matrix.hpp>
 #include <springfit/solve/newton.hpp>
-#include <springfit/step/biquadratic_equilibrium.hpp>
-#include <springfit/step/biquadratic_euler.hpp>
-#include <springfit/step/equilibrium.hpp>
-#include <springfit/step/implicit_body.hpp>
-#include <springfit/step/implicit_euler.hpp>
-#include <springfit/step/projective_euler.hpp>
-#include <springfit/step/spring_batch.hpp>
-#include <springfit/step/spring_body.hpp>
-#include <springfit/step/static_solver.hpp>
-#include <springfit/step/symplectic_euler.hpp>

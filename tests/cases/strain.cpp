@@ -5,7 +5,7 @@
 #include <springfit/fem/statics.hpp>
 #include <springfit/motion/record_static.hpp>
 #include <springfit/network/topology.hpp>
-#include <springfit/step/static_solver.hpp>
+#include <springfit/simulate/static_solver.hpp>
 
 #include "bodies.hpp"
 

@@ -57,7 +57,8 @@ static_assert(std::same_as<decltype(calibrate(std::declval<const SpringNetwork<3
                            Calibration<3>>);
 
 // Plain data: copied and moved freely.
-static_assert(std::copyable<SpringNetwork<3, double>> && std::copyable<Calibration<2>> && std::copyable<Motion<3, float>>);
+static_assert(std::copyable<SpringNetwork<3, double>> && std::copyable<Calibration<2>> &&
+              std::copyable<Motion<3, float>>);
 static_assert(std::is_aggregate_v<SpringNetwork<2, double>> && std::is_aggregate_v<CalibrateOptions>);
 
 } // namespace

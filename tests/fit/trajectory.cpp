@@ -5,8 +5,8 @@
 #include <springfit/fit/trajectory.hpp>
 #include <springfit/motion/record.hpp>
 #include <springfit/network/volume.hpp>
-#include <springfit/step/equilibrium.hpp>
-#include <springfit/step/symplectic_euler.hpp>
+#include <springfit/simulate/equilibrium.hpp>
+#include <springfit/simulate/symplectic_euler.hpp>
 
 using namespace springfit;
 using test::Random;

@@ -10,8 +10,8 @@
 #include <springfit/motion/record_static.hpp>
 #include <springfit/network/topology.hpp>
 #include <springfit/network/volume.hpp>
-#include <springfit/step/static_solver.hpp>
-#include <springfit/step/symplectic_euler.hpp>
+#include <springfit/simulate/static_solver.hpp>
+#include <springfit/simulate/symplectic_euler.hpp>
 
 namespace springfit::test {
 

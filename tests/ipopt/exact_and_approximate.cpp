@@ -4,7 +4,7 @@
 #include <springfit/fit/dominant_term.hpp>
 #include <springfit/ipopt/exact.hpp>
 #include <springfit/motion/record.hpp>
-#include <springfit/step/symplectic_euler.hpp>
+#include <springfit/simulate/symplectic_euler.hpp>
 
 using namespace springfit;
 using test::Random;

@@ -6,7 +6,7 @@
 #include <springfit/mesh/structured.hpp>
 #include <springfit/motion/record_static.hpp>
 #include <springfit/network/topology.hpp>
-#include <springfit/step/static_solver.hpp>
+#include <springfit/simulate/static_solver.hpp>
 
 using namespace springfit;
 

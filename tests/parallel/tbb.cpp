@@ -3,11 +3,11 @@
 
 #include <atomic>
 
+#include <springfit/body/spring_batch.hpp>
+#include <springfit/body/spring_body.hpp>
 #include <springfit/mesh/structured.hpp>
 #include <springfit/network/topology.hpp>
 #include <springfit/parallel/tbb.hpp>
-#include <springfit/step/spring_batch.hpp>
-#include <springfit/step/spring_body.hpp>
 
 using namespace springfit;
 

@@ -4,7 +4,7 @@
 
 #include <springfit/motion/record_static.hpp>
 #include <springfit/score/motion_error.hpp>
-#include <springfit/step/static_solver.hpp>
+#include <springfit/simulate/static_solver.hpp>
 
 #include "../step/example.hpp"
 

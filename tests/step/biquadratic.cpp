@@ -6,8 +6,8 @@
 #include <springfit/closed_form/delingette.hpp>
 #include <springfit/fem/statics.hpp>
 #include <springfit/motion/record.hpp>
-#include <springfit/step/biquadratic_equilibrium.hpp>
-#include <springfit/step/biquadratic_euler.hpp>
+#include <springfit/simulate/biquadratic_equilibrium.hpp>
+#include <springfit/simulate/biquadratic_euler.hpp>
 
 using namespace springfit;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tolerance.hpp"
 
-#include <springfit/step/static_solver.hpp>
+#include <springfit/simulate/static_solver.hpp>
 
 #include "example.hpp"
 

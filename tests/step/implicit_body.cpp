@@ -6,9 +6,9 @@
 
 #include <Eigen/Dense>
 
+#include <springfit/body/implicit_body.hpp>
 #include <springfit/network/forces.hpp>
-#include <springfit/step/implicit_body.hpp>
-#include <springfit/step/stable_step.hpp>
+#include <springfit/simulate/stable_step.hpp>
 
 #include "example.hpp"
 

@@ -2,9 +2,9 @@
 #include "tolerance.hpp"
 
 #include <springfit/motion/record.hpp>
-#include <springfit/step/equilibrium.hpp>
-#include <springfit/step/implicit_euler.hpp>
-#include <springfit/step/symplectic_euler.hpp>
+#include <springfit/simulate/equilibrium.hpp>
+#include <springfit/simulate/implicit_euler.hpp>
+#include <springfit/simulate/symplectic_euler.hpp>
 
 #include "example.hpp"
 

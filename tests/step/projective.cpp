@@ -5,10 +5,10 @@
 #include "tolerance.hpp"
 
 #include <springfit/motion/record.hpp>
-#include <springfit/step/equilibrium.hpp>
-#include <springfit/step/implicit_euler.hpp>
-#include <springfit/step/projective_euler.hpp>
-#include <springfit/step/stable_step.hpp>
+#include <springfit/simulate/equilibrium.hpp>
+#include <springfit/simulate/implicit_euler.hpp>
+#include <springfit/simulate/projective_euler.hpp>
+#include <springfit/simulate/stable_step.hpp>
 
 #include "example.hpp"
 

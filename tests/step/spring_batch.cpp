@@ -4,9 +4,9 @@
 #include "threads.hpp"
 #include "tolerance.hpp"
 
-#include <springfit/step/spring_batch.hpp>
-#include <springfit/step/spring_body.hpp>
-#include <springfit/step/stable_step.hpp>
+#include <springfit/body/spring_batch.hpp>
+#include <springfit/body/spring_body.hpp>
+#include <springfit/simulate/stable_step.hpp>
 
 #include "example.hpp"
 

@@ -4,9 +4,9 @@
 
 #include <numeric>
 
+#include <springfit/body/spring_body.hpp>
 #include <springfit/network/forces.hpp>
-#include <springfit/step/spring_body.hpp>
-#include <springfit/step/stable_step.hpp>
+#include <springfit/simulate/stable_step.hpp>
 
 #include "example.hpp"
 

@@ -2,7 +2,7 @@
 #include "eigenvalues.hpp"
 #include "tolerance.hpp"
 
-#include <springfit/step/symplectic_euler.hpp>
+#include <springfit/simulate/symplectic_euler.hpp>
 
 #include "example.hpp"
 

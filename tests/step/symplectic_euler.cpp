@@ -4,7 +4,7 @@
 #include "tolerance.hpp"
 
 #include <springfit/motion/record.hpp>
-#include <springfit/step/symplectic_euler.hpp>
+#include <springfit/simulate/symplectic_euler.hpp>
 
 #include "example.hpp"
 

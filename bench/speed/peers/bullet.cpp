@@ -13,7 +13,7 @@
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 
-#include <springfit/step/stable_step.hpp>
+#include <springfit/simulate/stable_step.hpp>
 
 #include "../bodies.hpp"
 #include "peers.hpp"

@@ -10,7 +10,7 @@
 #include <mujoco/mujoco.h>
 #include <unistd.h>
 
-#include <springfit/step/stable_step.hpp>
+#include <springfit/simulate/stable_step.hpp>
 
 #include "../bodies.hpp"
 #include "peers.hpp"

@@ -4,7 +4,7 @@
 #include <springfit/calibrate/candidate.hpp>
 #include <springfit/closed_form/all.hpp>
 #include <springfit/closed_form/cauchy_split.hpp>
-#include <springfit/step/stable_step.hpp>
+#include <springfit/simulate/stable_step.hpp>
 
 namespace springfit {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include <springfit/core/maximum.hpp>
 #include <springfit/cases/load_cases.hpp>
+#include <springfit/core/maximum.hpp>
 
 namespace springfit {
 

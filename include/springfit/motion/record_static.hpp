@@ -26,7 +26,7 @@ concept StaticSolver = requires(S solver, const Scenario<S::dimension, typename 
 
 /// A model whose equilibria can be recorded: `make_static_solver(model)` gives what finds them.
 ///
-/// Models of the concept: `fem::Model` and `SpringNetwork` (`step/static_solver.hpp`).
+/// Models of the concept: `fem::Model` and `SpringNetwork` (`simulate/static_solver.hpp`).
 template <class R>
 concept StaticReference = requires(const R& reference) {
     { make_static_solver(reference) } -> StaticSolver;

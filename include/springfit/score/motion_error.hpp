@@ -7,8 +7,8 @@
 #include <mutex>
 
 #include <springfit/core/execution.hpp>
-#include <springfit/score/simulate.hpp>
-#include <springfit/step/equilibrium.hpp>
+#include <springfit/simulate/equilibrium.hpp>
+#include <springfit/simulate/simulate.hpp>
 
 namespace springfit {
 

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <springfit/simulate/implicit_euler.hpp>
+
+namespace springfit {
+
+template <int Dim, std::floating_point Scalar>
+Status ImplicitEuler<Dim, Scalar>::advance(State<Dim, Scalar>& state, const Scenario<Dim, Scalar>& scenario,
+                                           Scalar dt) {
+    require(dt > 0 && std::isfinite(dt), "dt", "a positive time step", dt);
+    return detail::advance_body<Dim, Scalar>(m_network, m_body, state, scenario, dt,
+                                             [](Status status) { return status == Status::converged; });
+}
+
+} // namespace springfit
