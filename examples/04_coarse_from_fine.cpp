@@ -3,7 +3,7 @@
 
 #include <cstdio>
 
-#include <springfit/fit/trajectory.hpp>
+#include <springfit/fit/trajectory/gauss_newton.hpp>
 #include <springfit/springfit.hpp>
 
 using namespace springfit;

@@ -7,7 +7,7 @@
 
 #include <springfit/core/execution.hpp>
 #include <springfit/core/progress.hpp>
-#include <springfit/fit/problem.hpp>
+#include <springfit/fit/acceleration/problem.hpp>
 #include <springfit/mesh/mesh.hpp>
 #include <springfit/motion/transfer.hpp>
 

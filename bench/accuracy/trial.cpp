@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "trial.hpp"
 
-#include <springfit/fit/acceleration_objective.hpp>
-#include <springfit/fit/dominant_term.hpp>
+#include <springfit/fit/acceleration/dominant_term.hpp>
+#include <springfit/fit/acceleration/objective.hpp>
 #include <springfit/score/motion_error.hpp>
 
 namespace study {

@@ -6,7 +6,7 @@
 #include <springfit/cases/load_cases.hpp>
 #include <springfit/cases/strain.hpp>
 #include <springfit/closed_form/all.hpp>
-#include <springfit/fit/trajectory.hpp>
+#include <springfit/fit/trajectory/gauss_newton.hpp>
 #include <springfit/motion/record_static.hpp>
 
 #include "study.hpp"

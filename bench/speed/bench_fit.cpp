@@ -7,9 +7,9 @@
 #include <map>
 #include <memory>
 
-#include <springfit/fit/acceleration_objective.hpp>
-#include <springfit/fit/dominant_term.hpp>
-#include <springfit/fit/exact.hpp>
+#include <springfit/fit/acceleration/dominant_term.hpp>
+#include <springfit/fit/acceleration/exact.hpp>
+#include <springfit/fit/acceleration/objective.hpp>
 #ifdef SPRINGFIT_BENCH_CHOLMOD
 #include <springfit/cholmod/supernodal_factor.hpp>
 #endif

@@ -5,7 +5,7 @@
 #include <map>
 #include <memory>
 
-#include <springfit/fit/trajectory.hpp>
+#include <springfit/fit/trajectory/gauss_newton.hpp>
 #include <springfit/simulate/equilibrium.hpp>
 #include <springfit/solve/sparse_cholesky.hpp>
 #ifdef SPRINGFIT_BENCH_CHOLMOD

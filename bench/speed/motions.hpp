@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include <springfit/fit/acceleration_objective.hpp>
+#include <springfit/fit/acceleration/objective.hpp>
 #include <springfit/motion/motion.hpp>
 #include <springfit/network/forces.hpp>
 

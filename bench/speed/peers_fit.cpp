@@ -7,7 +7,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include <springfit/fit/exact.hpp>
+#include <springfit/fit/acceleration/exact.hpp>
 #ifdef SPRINGFIT_BENCH_IPOPT
 #include <springfit/ipopt/exact.hpp>
 #endif

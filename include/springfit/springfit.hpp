@@ -18,10 +18,10 @@
 #include <springfit/fem/dynamics.hpp>
 #include <springfit/fem/loads.hpp>
 #include <springfit/fem/statics.hpp>
-#include <springfit/fit/acceleration_objective.hpp>
-#include <springfit/fit/dominant_term.hpp>
-#include <springfit/fit/exact.hpp>
-#include <springfit/fit/trajectory.hpp>
+#include <springfit/fit/acceleration/dominant_term.hpp>
+#include <springfit/fit/acceleration/exact.hpp>
+#include <springfit/fit/acceleration/objective.hpp>
+#include <springfit/fit/trajectory/gauss_newton.hpp>
 #include <springfit/mesh/structured.hpp>
 #include <springfit/motion/record_static.hpp>
 #include <springfit/motion/replay.hpp>

@@ -4,8 +4,8 @@
 #include <numeric>
 #include <stdexcept>
 
-#include <springfit/fit/dominant_term.hpp>
-#include <springfit/fit/exact.hpp>
+#include <springfit/fit/acceleration/dominant_term.hpp>
+#include <springfit/fit/acceleration/exact.hpp>
 #include <springfit/motion/record.hpp>
 
 using namespace springfit;

@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-#include <springfit/fit/acceleration_objective.hpp>
+#include <springfit/fit/acceleration/objective.hpp>
 #include <springfit/mesh/structured.hpp>
 
 namespace springfit::test {

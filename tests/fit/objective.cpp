@@ -4,7 +4,7 @@
 
 #include <numeric>
 
-#include <springfit/fit/dominant_term.hpp>
+#include <springfit/fit/acceleration/dominant_term.hpp>
 
 using namespace springfit;
 using test::Random;

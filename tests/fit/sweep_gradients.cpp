@@ -2,7 +2,7 @@
 #include "fit_data.hpp"
 #include "threads.hpp"
 
-#include <springfit/fit/detail/sweep_gradients.hpp>
+#include <springfit/fit/acceleration/detail/eisenstat_cg.hpp>
 
 using namespace springfit;
 using test::Random;

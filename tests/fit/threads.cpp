@@ -2,8 +2,8 @@
 #include "threads.hpp"
 #include "trajectory_cases.hpp"
 
-#include <springfit/fit/dominant_term.hpp>
-#include <springfit/fit/exact.hpp>
+#include <springfit/fit/acceleration/dominant_term.hpp>
+#include <springfit/fit/acceleration/exact.hpp>
 
 using namespace springfit;
 using test::Random;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fit_data.hpp"
 
-#include <springfit/fit/dominant_term.hpp>
-#include <springfit/fit/trajectory.hpp>
+#include <springfit/fit/acceleration/dominant_term.hpp>
+#include <springfit/fit/trajectory/gauss_newton.hpp>
 #include <springfit/motion/record.hpp>
 #include <springfit/network/volume.hpp>
 #include <springfit/simulate/equilibrium.hpp>

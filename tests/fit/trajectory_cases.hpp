@@ -5,7 +5,7 @@
 
 #include <springfit/closed_form/van_gelder.hpp>
 #include <springfit/fem/statics.hpp>
-#include <springfit/fit/trajectory.hpp>
+#include <springfit/fit/trajectory/gauss_newton.hpp>
 #include <springfit/motion/record.hpp>
 #include <springfit/motion/record_static.hpp>
 #include <springfit/network/topology.hpp>

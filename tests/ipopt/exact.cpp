@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include <springfit/fem/dynamics.hpp>
-#include <springfit/fit/exact.hpp>
+#include <springfit/fit/acceleration/exact.hpp>
 #include <springfit/ipopt/exact.hpp>
 #include <springfit/motion/record.hpp>
 #include <springfit/network/topology.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "../fit/fit_data.hpp"
 
-#include <springfit/fit/dominant_term.hpp>
+#include <springfit/fit/acceleration/dominant_term.hpp>
 #include <springfit/ipopt/exact.hpp>
 #include <springfit/motion/record.hpp>
 #include <springfit/simulate/symplectic_euler.hpp>

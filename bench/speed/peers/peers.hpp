@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include <springfit/fit/problem.hpp>
+#include <springfit/fit/acceleration/problem.hpp>
 #include <springfit/network/spring_network.hpp>
 
 /// Other programs on the very bodies and problems of the benchmarks, each in a file of its own that is built where the

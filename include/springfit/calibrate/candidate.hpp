@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include <springfit/fit/problem.hpp>
-#include <springfit/fit/trajectory.hpp>
+#include <springfit/fit/acceleration/problem.hpp>
+#include <springfit/fit/trajectory/gauss_newton.hpp>
 #include <springfit/network/spring_network.hpp>
 
 namespace springfit {

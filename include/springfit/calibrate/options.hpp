@@ -5,7 +5,7 @@
 
 #include <springfit/core/execution.hpp>
 #include <springfit/core/progress.hpp>
-#include <springfit/fit/exact.hpp>
+#include <springfit/fit/acceleration/exact.hpp>
 
 namespace springfit {
 

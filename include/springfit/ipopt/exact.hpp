@@ -6,7 +6,7 @@
 #include <variant>
 
 #include <springfit/core/progress.hpp>
-#include <springfit/fit/problem.hpp>
+#include <springfit/fit/acceleration/problem.hpp>
 
 namespace springfit::ipopt {
 

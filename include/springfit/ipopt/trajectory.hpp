@@ -5,7 +5,7 @@
 #include <string>
 #include <variant>
 
-#include <springfit/fit/trajectory.hpp>
+#include <springfit/fit/trajectory/gauss_newton.hpp>
 
 namespace springfit::ipopt {
 

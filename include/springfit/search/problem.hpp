@@ -8,7 +8,7 @@
 #include <pagmo/threading.hpp>
 #include <pagmo/types.hpp>
 
-#include <springfit/fit/trajectory_problem.hpp>
+#include <springfit/fit/trajectory/problem.hpp>
 
 /// Searches that only look at values, through pagmo2: what was done before gradients of motion were at hand, kept as
 /// baselines for `gauss_newton` and `ipopt::trajectory`, which need tens to hundreds of times fewer simulations.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <springfit/fit/trajectory.hpp>
+#include <springfit/fit/trajectory/gauss_newton.hpp>
 
 namespace springfit::search {
 

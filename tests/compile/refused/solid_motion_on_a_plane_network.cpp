@@ -1,5 +1,5 @@
 // refused: no matching function for call to [^ ]*acceleration_problem<2, double>
-#include <springfit/fit/acceleration_objective.hpp>
+#include <springfit/fit/acceleration/objective.hpp>
 
 using namespace springfit;
 

@@ -3,8 +3,8 @@
 
 #include <springfit/calibrate/candidates.hpp>
 #include <springfit/core/stage.hpp>
-#include <springfit/fit/acceleration_objective.hpp>
-#include <springfit/fit/dominant_term.hpp>
+#include <springfit/fit/acceleration/dominant_term.hpp>
+#include <springfit/fit/acceleration/objective.hpp>
 #include <springfit/network/damping.hpp>
 #include <springfit/network/forces.hpp>
 #include <springfit/score/motion_error.hpp>

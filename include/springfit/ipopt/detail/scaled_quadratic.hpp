@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <springfit/fit/problem.hpp>
+#include <springfit/fit/acceleration/problem.hpp>
 #include <springfit/ipopt/detail/box_scaling.hpp>
 
 namespace springfit::ipopt::detail {

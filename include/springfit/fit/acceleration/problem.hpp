@@ -3,8 +3,8 @@
 
 #include <springfit/core/maximum.hpp>
 #include <springfit/core/status.hpp>
-#include <springfit/fit/node_quadratic.hpp>
-#include <springfit/fit/parameters.hpp>
+#include <springfit/fit/acceleration/node_quadratic.hpp>
+#include <springfit/fit/acceleration/parameters.hpp>
 
 namespace springfit {
 

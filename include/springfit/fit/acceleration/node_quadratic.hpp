@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include <springfit/fit/detail/packed_product.hpp>
+#include <springfit/fit/acceleration/detail/packed_product.hpp>
 
 namespace springfit {
 

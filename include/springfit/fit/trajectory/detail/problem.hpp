@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include <springfit/fit/trajectory_problem.hpp>
+#include <springfit/fit/trajectory/problem.hpp>
 
 namespace springfit {
 

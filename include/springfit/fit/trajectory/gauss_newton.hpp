@@ -8,7 +8,7 @@
 
 #include <springfit/core/maximum.hpp>
 #include <springfit/core/progress.hpp>
-#include <springfit/fit/trajectory_problem.hpp>
+#include <springfit/fit/trajectory/problem.hpp>
 
 namespace springfit {
 

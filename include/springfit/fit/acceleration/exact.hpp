@@ -3,7 +3,7 @@
 
 #include <springfit/core/execution.hpp>
 #include <springfit/core/progress.hpp>
-#include <springfit/fit/problem.hpp>
+#include <springfit/fit/acceleration/problem.hpp>
 
 namespace springfit {
 
@@ -37,4 +37,4 @@ template <std::same_as<FitProblem> Problem>
 
 } // namespace springfit
 
-#include <springfit/fit/detail/exact.hpp>
+#include <springfit/fit/acceleration/detail/exact.hpp>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <springfit/fit/detail/node_estimate.hpp>
-#include <springfit/fit/dominant_term.hpp>
+#include <springfit/fit/acceleration/detail/node_estimate.hpp>
+#include <springfit/fit/acceleration/dominant_term.hpp>
 
 namespace springfit {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <springfit/fit/node_quadratic.hpp>
+#include <springfit/fit/acceleration/node_quadratic.hpp>
 #include <springfit/solve/sparse_cholesky.hpp>
 
 namespace springfit::detail {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <springfit/core/execution.hpp>
-#include <springfit/fit/node_quadratic.hpp>
+#include <springfit/fit/acceleration/node_quadratic.hpp>
 
 namespace springfit::detail {
 

@@ -6,7 +6,7 @@
 #include <span>
 
 #include <springfit/core/execution.hpp>
-#include <springfit/fit/node_quadratic.hpp>
+#include <springfit/fit/acceleration/node_quadratic.hpp>
 #include <springfit/network/locality.hpp>
 
 namespace springfit::detail {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <springfit/fit/detail/free_solver.hpp>
-#include <springfit/fit/detail/node_estimate.hpp>
-#include <springfit/fit/exact.hpp>
+#include <springfit/fit/acceleration/detail/node_estimate.hpp>
+#include <springfit/fit/acceleration/detail/reduced_solver.hpp>
+#include <springfit/fit/acceleration/exact.hpp>
 
 namespace springfit {
 

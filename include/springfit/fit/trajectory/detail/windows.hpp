@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include <springfit/fit/detail/implicit_block.hpp>
+#include <springfit/fit/trajectory/detail/implicit_block.hpp>
 #include <springfit/motion/motion.hpp>
 #include <springfit/network/forces.hpp>
 

@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include <springfit/fit/detail/column_lanes.hpp>
-#include <springfit/fit/trajectory_parameters.hpp>
+#include <springfit/fit/trajectory/detail/column_lanes.hpp>
+#include <springfit/fit/trajectory/parameters.hpp>
 #include <springfit/network/forces.hpp>
 
 /// The forces of a network and their derivatives for several motions of it at once: all blocks are over all nodes

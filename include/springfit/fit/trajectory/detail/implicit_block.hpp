@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include <springfit/fit/detail/rotated_factor.hpp>
+#include <springfit/fit/trajectory/detail/corotated_block_preconditioner.hpp>
 
 namespace springfit::detail {
 

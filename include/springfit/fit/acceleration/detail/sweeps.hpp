@@ -3,9 +3,9 @@
 
 #include <map>
 
-#include <springfit/fit/detail/indexed_heap.hpp>
-#include <springfit/fit/detail/node_estimate.hpp>
-#include <springfit/fit/dominant_term.hpp>
+#include <springfit/fit/acceleration/detail/indexed_heap.hpp>
+#include <springfit/fit/acceleration/detail/node_estimate.hpp>
+#include <springfit/fit/acceleration/dominant_term.hpp>
 
 namespace springfit {
 

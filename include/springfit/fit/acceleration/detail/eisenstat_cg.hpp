@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <springfit/fit/detail/symmetric_gauss_seidel.hpp>
+#include <springfit/fit/acceleration/detail/symmetric_gauss_seidel.hpp>
 
 namespace springfit::detail {
 

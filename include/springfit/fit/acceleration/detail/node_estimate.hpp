@@ -4,7 +4,7 @@
 #include <chrono>
 
 #include <springfit/core/execution.hpp>
-#include <springfit/fit/problem.hpp>
+#include <springfit/fit/acceleration/problem.hpp>
 #include <springfit/solve/bounded_least_squares.hpp>
 
 namespace springfit {

@@ -3,8 +3,8 @@
 
 #include <springfit/core/execution.hpp>
 #include <springfit/core/status.hpp>
-#include <springfit/fit/detail/trajectory_windows.hpp>
-#include <springfit/fit/trajectory_parameters.hpp>
+#include <springfit/fit/trajectory/detail/windows.hpp>
+#include <springfit/fit/trajectory/parameters.hpp>
 #include <springfit/motion/motion.hpp>
 
 namespace springfit {
@@ -134,4 +134,4 @@ private:
 
 } // namespace springfit
 
-#include <springfit/fit/detail/trajectory_problem.hpp>
+#include <springfit/fit/trajectory/detail/problem.hpp>

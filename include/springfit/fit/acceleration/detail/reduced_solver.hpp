@@ -6,9 +6,9 @@
 #include <limits>
 #include <optional>
 
-#include <springfit/fit/detail/masked_cholesky.hpp>
-#include <springfit/fit/detail/node_product.hpp>
-#include <springfit/fit/detail/sweep_gradients.hpp>
+#include <springfit/fit/acceleration/detail/eisenstat_cg.hpp>
+#include <springfit/fit/acceleration/detail/masked_cholesky.hpp>
+#include <springfit/fit/acceleration/detail/node_product.hpp>
 
 namespace springfit::detail {
 

@@ -3,7 +3,7 @@
 
 #include <springfit/core/execution.hpp>
 #include <springfit/core/progress.hpp>
-#include <springfit/fit/problem.hpp>
+#include <springfit/fit/acceleration/problem.hpp>
 
 namespace springfit {
 
@@ -50,5 +50,5 @@ template <std::same_as<FitProblem> Problem>
 
 } // namespace springfit
 
-#include <springfit/fit/detail/one_pass.hpp>
-#include <springfit/fit/detail/sweeps.hpp>
+#include <springfit/fit/acceleration/detail/one_pass.hpp>
+#include <springfit/fit/acceleration/detail/sweeps.hpp>

@@ -5,8 +5,8 @@
 #include <concepts>
 
 #include <springfit/core/execution.hpp>
-#include <springfit/fit/detail/frame_batch.hpp>
-#include <springfit/fit/problem.hpp>
+#include <springfit/fit/acceleration/detail/frame_batch.hpp>
+#include <springfit/fit/acceleration/problem.hpp>
 #include <springfit/motion/motion.hpp>
 #include <springfit/network/volume.hpp>
 
@@ -184,4 +184,4 @@ acceleration_problem(const SpringNetwork<Dim, Scalar>& network, const std::vecto
 
 } // namespace springfit
 
-#include <springfit/fit/detail/acceleration_objective.hpp>
+#include <springfit/fit/acceleration/detail/objective.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <springfit/fit/detail/spring_block.hpp>
+#include <springfit/fit/trajectory/detail/spring_block.hpp>
 
 namespace springfit::detail {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <springfit/fit/acceleration_objective.hpp>
+#include <springfit/fit/acceleration/objective.hpp>
 
 namespace springfit {
 
