@@ -4,7 +4,7 @@
 #include <random>
 
 #include <springfit/mesh/structured.hpp>
-#include <springfit/network/topology.hpp>
+#include <springfit/network/builders.hpp>
 
 #include "study.hpp"
 

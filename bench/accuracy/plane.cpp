@@ -3,7 +3,7 @@
 
 #include <springfit/fem/statics.hpp>
 #include <springfit/mesh/structured.hpp>
-#include <springfit/network/topology.hpp>
+#include <springfit/network/builders.hpp>
 
 #include "svg.hpp"
 #include "trial.hpp"

@@ -4,7 +4,7 @@
 
 #include <springfit/motion/record.hpp>
 #include <springfit/motion/replay.hpp>
-#include <springfit/network/topology.hpp>
+#include <springfit/network/builders.hpp>
 #include <springfit/score/frequency.hpp>
 #include <springfit/simulate/simulate.hpp>
 #include <springfit/simulate/static_solver.hpp>

@@ -2,7 +2,7 @@
 #include "solid.hpp"
 
 #include <springfit/closed_form/cauchy_split.hpp>
-#include <springfit/network/topology.hpp>
+#include <springfit/network/builders.hpp>
 
 namespace study {
 

@@ -8,7 +8,7 @@
 #include <benchmark/benchmark.h>
 
 #include <springfit/mesh/structured.hpp>
-#include <springfit/network/topology.hpp>
+#include <springfit/network/builders.hpp>
 
 #include "plain.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <springfit/calibrate/given.hpp>
 #include <springfit/cases/clamp_sets.hpp>
-#include <springfit/network/topology.hpp>
+#include <springfit/network/builders.hpp>
 
 #include "body.hpp"
 

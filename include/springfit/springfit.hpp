@@ -28,9 +28,9 @@
 #include <springfit/motion/surface.hpp>
 #include <springfit/motion/transfer.hpp>
 #include <springfit/motion/user_reference.hpp>
+#include <springfit/network/builders.hpp>
 #include <springfit/network/damping.hpp>
 #include <springfit/network/forces.hpp>
-#include <springfit/network/topology.hpp>
 #include <springfit/score/embedded_error.hpp>
 #include <springfit/score/frequency.hpp>
 #include <springfit/score/motion_error.hpp>
@@ -41,5 +41,5 @@
 #include <springfit/simulate/projective_euler.hpp>
 #include <springfit/simulate/static_solver.hpp>
 #include <springfit/simulate/symplectic_euler.hpp>
-#include <springfit/solve/clique_matrix.hpp>
+#include <springfit/solve/block_matrix.hpp>
 #include <springfit/solve/newton.hpp>

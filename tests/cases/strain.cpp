@@ -4,7 +4,7 @@
 #include <springfit/cases/strain.hpp>
 #include <springfit/fem/statics.hpp>
 #include <springfit/motion/record_static.hpp>
-#include <springfit/network/topology.hpp>
+#include <springfit/network/builders.hpp>
 #include <springfit/simulate/static_solver.hpp>
 
 #include "bodies.hpp"

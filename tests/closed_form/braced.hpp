@@ -2,7 +2,7 @@
 #pragma once
 
 #include <springfit/mesh/structured.hpp>
-#include <springfit/network/topology.hpp>
+#include <springfit/network/builders.hpp>
 
 namespace springfit::test {
 

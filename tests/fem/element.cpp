@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include <springfit/fem/element.hpp>
+#include <springfit/mesh/element.hpp>
 
 using namespace springfit;
 

@@ -8,7 +8,7 @@
 #include <springfit/fit/trajectory/gauss_newton.hpp>
 #include <springfit/motion/record.hpp>
 #include <springfit/motion/record_static.hpp>
-#include <springfit/network/topology.hpp>
+#include <springfit/network/builders.hpp>
 #include <springfit/network/volume.hpp>
 #include <springfit/simulate/static_solver.hpp>
 #include <springfit/simulate/symplectic_euler.hpp>

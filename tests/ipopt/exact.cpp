@@ -8,7 +8,7 @@
 #include <springfit/fit/acceleration/exact.hpp>
 #include <springfit/ipopt/exact.hpp>
 #include <springfit/motion/record.hpp>
-#include <springfit/network/topology.hpp>
+#include <springfit/network/builders.hpp>
 
 using namespace springfit;
 using test::Random;

@@ -5,7 +5,7 @@
 #include <springfit/fem/statics.hpp>
 #include <springfit/mesh/structured.hpp>
 #include <springfit/motion/record_static.hpp>
-#include <springfit/network/topology.hpp>
+#include <springfit/network/builders.hpp>
 #include <springfit/simulate/static_solver.hpp>
 
 using namespace springfit;

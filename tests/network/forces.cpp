@@ -3,8 +3,8 @@
 #include "tolerance.hpp"
 
 #include <springfit/mesh/structured.hpp>
+#include <springfit/network/builders.hpp>
 #include <springfit/network/forces.hpp>
-#include <springfit/network/topology.hpp>
 
 using namespace springfit;
 

@@ -4,8 +4,8 @@
 #include <string>
 
 #include <springfit/mesh/structured.hpp>
+#include <springfit/network/builders.hpp>
 #include <springfit/network/damping.hpp>
-#include <springfit/network/topology.hpp>
 
 using namespace springfit;
 

@@ -6,8 +6,8 @@
 #include <random>
 
 #include <springfit/mesh/structured.hpp>
+#include <springfit/network/builders.hpp>
 #include <springfit/network/forces.hpp>
-#include <springfit/network/topology.hpp>
 
 using namespace springfit;
 

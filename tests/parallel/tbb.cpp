@@ -6,7 +6,7 @@
 #include <springfit/body/spring_batch.hpp>
 #include <springfit/body/spring_body.hpp>
 #include <springfit/mesh/structured.hpp>
-#include <springfit/network/topology.hpp>
+#include <springfit/network/builders.hpp>
 #include <springfit/parallel/tbb.hpp>
 
 using namespace springfit;

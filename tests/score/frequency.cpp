@@ -5,7 +5,7 @@
 
 #include <springfit/closed_form/van_gelder.hpp>
 #include <springfit/mesh/structured.hpp>
-#include <springfit/network/topology.hpp>
+#include <springfit/network/builders.hpp>
 #include <springfit/score/frequency.hpp>
 
 using namespace springfit;

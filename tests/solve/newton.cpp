@@ -5,7 +5,7 @@
 
 #include <Eigen/Cholesky>
 
-#include <springfit/solve/clique_matrix.hpp>
+#include <springfit/solve/block_matrix.hpp>
 #include <springfit/solve/newton.hpp>
 
 using namespace springfit;

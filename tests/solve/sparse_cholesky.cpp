@@ -6,8 +6,8 @@
 
 #include <springfit/cholmod/supernodal_factor.hpp>
 #include <springfit/mesh/structured.hpp>
+#include <springfit/network/builders.hpp>
 #include <springfit/network/forces.hpp>
-#include <springfit/network/topology.hpp>
 #include <springfit/solve/sparse_cholesky.hpp>
 #include <springfit/solve/symmetric_solver.hpp>
 

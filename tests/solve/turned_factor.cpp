@@ -3,7 +3,7 @@
 
 #include <springfit/motion/scenario.hpp>
 #include <springfit/network/forces.hpp>
-#include <springfit/solve/turned_solver.hpp>
+#include <springfit/solve/corotated_solver.hpp>
 
 #include "../step/example.hpp"
 

@@ -7,7 +7,7 @@
 
 #include <springfit/mesh/structured.hpp>
 #include <springfit/motion/scenario.hpp>
-#include <springfit/network/topology.hpp>
+#include <springfit/network/builders.hpp>
 
 namespace springfit::test {
 

@@ -7,7 +7,7 @@
 #include <springfit/calibrate/score.hpp>
 #include <springfit/cases/fem_recorder.hpp>
 #include <springfit/cases/record_cases.hpp>
-#include <springfit/network/topology.hpp>
+#include <springfit/network/builders.hpp>
 
 namespace springfit {
 

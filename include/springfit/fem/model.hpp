@@ -3,7 +3,7 @@
 
 #include <springfit/fem/detail/law.hpp>
 #include <springfit/fem/elastic_body.hpp>
-#include <springfit/fem/element.hpp>
+#include <springfit/mesh/element.hpp>
 #include <springfit/mesh/mesh.hpp>
 
 namespace springfit::fem {

@@ -6,8 +6,8 @@
 
 #include <springfit/fem/model.hpp>
 #include <springfit/motion/state.hpp>
+#include <springfit/solve/corotated_solver.hpp>
 #include <springfit/solve/newton.hpp>
-#include <springfit/solve/turned_solver.hpp>
 
 namespace springfit::fem {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include <springfit/network/volume.hpp>
-#include <springfit/solve/clique_matrix.hpp>
+#include <springfit/solve/block_matrix.hpp>
 
 namespace springfit {
 

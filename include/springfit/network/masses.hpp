@@ -2,7 +2,7 @@
 #pragma once
 
 #include <springfit/mesh/corner_mesh.hpp>
-#include <springfit/network/detail/corner_volumes.hpp>
+#include <springfit/mesh/detail/corner_volumes.hpp>
 
 namespace springfit {
 

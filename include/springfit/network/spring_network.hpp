@@ -5,7 +5,7 @@
 
 #include <springfit/core/error.hpp>
 #include <springfit/core/types.hpp>
-#include <springfit/network/simplex.hpp>
+#include <springfit/mesh/simplex.hpp>
 
 namespace springfit {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include <springfit/mesh/corner_mesh.hpp>
-#include <springfit/network/simplex.hpp>
+#include <springfit/mesh/simplex.hpp>
 #include <springfit/network/spring_network.hpp>
 
 namespace springfit {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <springfit/closed_form/van_gelder.hpp>
 #include <springfit/mesh/structured.hpp>
-#include <springfit/network/topology.hpp>
+#include <springfit/network/builders.hpp>
 
 int main() {
     const auto mesh = springfit::tetrahedron_grid<double>({2, 2, 2}, {1., 1., 1.});

@@ -6,7 +6,7 @@
 
 #include <springfit/body/detail/packed_cell.hpp>
 #include <springfit/core/execution.hpp>
-#include <springfit/network/locality.hpp>
+#include <springfit/solve/locality.hpp>
 
 namespace springfit::detail {
 

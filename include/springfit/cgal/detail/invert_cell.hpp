@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include <springfit/fem/element.hpp>
+#include <springfit/mesh/element.hpp>
 #include <springfit/mesh/mesh.hpp>
 
 namespace springfit::cgal::detail {

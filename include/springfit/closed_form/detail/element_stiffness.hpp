@@ -2,7 +2,7 @@
 #pragma once
 
 #include <springfit/closed_form/isotropic_solid.hpp>
-#include <springfit/fem/element.hpp>
+#include <springfit/mesh/element.hpp>
 #include <springfit/mesh/mesh.hpp>
 
 namespace springfit::detail {

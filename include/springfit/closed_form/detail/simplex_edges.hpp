@@ -2,7 +2,7 @@
 #pragma once
 
 #include <springfit/closed_form/isotropic_solid.hpp>
-#include <springfit/network/topology.hpp>
+#include <springfit/network/builders.hpp>
 
 namespace springfit::detail {
 

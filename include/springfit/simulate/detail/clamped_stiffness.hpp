@@ -4,7 +4,7 @@
 #include <limits>
 
 #include <springfit/simulate/detail/spring_potential.hpp>
-#include <springfit/solve/turned_solver.hpp>
+#include <springfit/solve/corotated_solver.hpp>
 
 namespace springfit::detail {
 

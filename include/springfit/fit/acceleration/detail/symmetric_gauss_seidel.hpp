@@ -7,7 +7,7 @@
 
 #include <springfit/core/execution.hpp>
 #include <springfit/fit/acceleration/node_quadratic.hpp>
-#include <springfit/network/locality.hpp>
+#include <springfit/solve/locality.hpp>
 
 namespace springfit::detail {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <springfit/solve/clique_matrix.hpp>
+#include <springfit/solve/block_matrix.hpp>
 
 namespace springfit {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <springfit/solve/corotated_preconditioner.hpp>
 #include <springfit/solve/symmetric_solver.hpp>
-#include <springfit/solve/turned_factor.hpp>
 
 namespace springfit {
 
@@ -52,4 +52,4 @@ private:
 
 } // namespace springfit
 
-#include <springfit/solve/detail/turned_solver.hpp>
+#include <springfit/solve/detail/corotated_solver.hpp>

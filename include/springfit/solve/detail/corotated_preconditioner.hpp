@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <springfit/solve/turned_factor.hpp>
+#include <springfit/solve/corotated_preconditioner.hpp>
 
 namespace springfit {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <springfit/fem/detail/quadrature.hpp>
 #include <springfit/mesh/cell.hpp>
+#include <springfit/mesh/detail/quadrature.hpp>
 
 namespace springfit::fem {
 
