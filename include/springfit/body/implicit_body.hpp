@@ -77,4 +77,4 @@ private:
 
 } // namespace springfit
 
-#include <springfit/body/detail/implicit_body.hpp>
+#include <springfit/body/detail/implicit_body_impl.hpp>

@@ -73,4 +73,4 @@ private:
 
 } // namespace springfit
 
-#include <springfit/body/detail/projective_body.hpp>
+#include <springfit/body/detail/projective_body_impl.hpp>

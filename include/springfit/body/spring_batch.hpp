@@ -82,4 +82,4 @@ private:
 
 } // namespace springfit
 
-#include <springfit/body/detail/spring_batch.hpp>
+#include <springfit/body/detail/spring_batch_impl.hpp>

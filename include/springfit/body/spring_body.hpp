@@ -79,4 +79,4 @@ private:
 
 } // namespace springfit
 
-#include <springfit/body/detail/spring_body.hpp>
+#include <springfit/body/detail/spring_body_impl.hpp>

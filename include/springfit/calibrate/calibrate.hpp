@@ -114,4 +114,4 @@ template <int Dim, CellType Cell, fem::Material Mat>
 
 } // namespace springfit
 
-#include <springfit/calibrate/detail/calibrate.hpp>
+#include <springfit/calibrate/detail/calibrate_impl.hpp>

@@ -28,4 +28,4 @@ template <int Dim>
 
 } // namespace springfit
 
-#include <springfit/calibrate/detail/candidates.hpp>
+#include <springfit/calibrate/detail/candidates_impl.hpp>

@@ -29,4 +29,4 @@ template <int Dim>
 
 } // namespace springfit
 
-#include <springfit/calibrate/detail/score.hpp>
+#include <springfit/calibrate/detail/score_impl.hpp>

@@ -69,4 +69,4 @@ template <Reference R>
 
 } // namespace springfit
 
-#include <springfit/cases/detail/record_cases.hpp>
+#include <springfit/cases/detail/record_cases_impl.hpp>

@@ -80,5 +80,5 @@ private:
 
 } // namespace springfit::cgal
 
-#include <springfit/cgal/detail/interpolation.hpp>
-#include <springfit/cgal/detail/location.hpp>
+#include <springfit/cgal/detail/interpolation_impl.hpp>
+#include <springfit/cgal/detail/location_impl.hpp>

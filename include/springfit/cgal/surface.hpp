@@ -57,5 +57,5 @@ SPRINGFIT_CGAL_INLINE SurfaceExamination require_solid(const Surface& surface, s
 } // namespace springfit::cgal
 
 #ifndef SPRINGFIT_COMPILED_CGAL
-#include <springfit/cgal/detail/surface.hpp>
+#include <springfit/cgal/detail/surface_impl.hpp>
 #endif

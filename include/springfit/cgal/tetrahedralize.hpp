@@ -46,5 +46,5 @@ template <std::floating_point Scalar>
 } // namespace springfit::cgal
 
 #ifndef SPRINGFIT_COMPILED_CGAL
-#include <springfit/cgal/detail/tetrahedralize.hpp>
+#include <springfit/cgal/detail/tetrahedralize_impl.hpp>
 #endif

@@ -115,4 +115,4 @@ Topology(const Mesh<Dim, Scalar, Cell>&) -> Topology<Cell>;
 
 } // namespace springfit::cgal
 
-#include <springfit/cgal/detail/topology.hpp>
+#include <springfit/cgal/detail/topology_impl.hpp>

@@ -54,5 +54,5 @@ template <std::floating_point Scalar>
 } // namespace springfit::cgal
 
 #ifndef SPRINGFIT_COMPILED_CGAL
-#include <springfit/cgal/detail/triangulate.hpp>
+#include <springfit/cgal/detail/triangulate_impl.hpp>
 #endif

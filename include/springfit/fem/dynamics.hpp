@@ -90,4 +90,4 @@ template <Elastic B>
 
 } // namespace springfit::fem
 
-#include <springfit/fem/detail/dynamics.hpp>
+#include <springfit/fem/detail/dynamics_impl.hpp>

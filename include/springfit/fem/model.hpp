@@ -130,4 +130,4 @@ private:
 
 } // namespace springfit::fem
 
-#include <springfit/fem/detail/model.hpp>
+#include <springfit/fem/detail/model_impl.hpp>

@@ -114,4 +114,4 @@ template <Elastic B>
 
 } // namespace springfit::fem
 
-#include <springfit/fem/detail/statics.hpp>
+#include <springfit/fem/detail/statics_impl.hpp>

@@ -59,4 +59,4 @@ private:
 
 } // namespace springfit::fem
 
-#include <springfit/fem/detail/stiffness.hpp>
+#include <springfit/fem/detail/stiffness_impl.hpp>

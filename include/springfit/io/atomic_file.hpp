@@ -86,4 +86,4 @@ private:
 
 } // namespace springfit::io
 
-#include <springfit/io/detail/atomic_file.hpp>
+#include <springfit/io/detail/atomic_file_impl.hpp>

@@ -141,4 +141,4 @@ private:
 
 } // namespace springfit::io::hdf5
 
-#include <springfit/io/detail/hdf5.hpp>
+#include <springfit/io/detail/hdf5_impl.hpp>

@@ -47,4 +47,4 @@ private:
 
 } // namespace springfit::io
 
-#include <springfit/io/detail/json.hpp>
+#include <springfit/io/detail/json_impl.hpp>

@@ -23,4 +23,4 @@ namespace springfit::io {
 
 } // namespace springfit::io
 
-#include <springfit/io/detail/mesh_file.hpp>
+#include <springfit/io/detail/mesh_file_impl.hpp>

@@ -59,4 +59,4 @@ template <int Dim, std::floating_point Scalar>
 
 } // namespace springfit::io
 
-#include <springfit/io/detail/model_json.hpp>
+#include <springfit/io/detail/model_json_impl.hpp>

@@ -34,4 +34,4 @@ struct ExactOptions {
 
 } // namespace springfit::ipopt
 
-#include <springfit/ipopt/detail/exact.hpp>
+#include <springfit/ipopt/detail/exact_impl.hpp>

@@ -42,4 +42,4 @@ template <int Dim>
 
 } // namespace springfit::ipopt
 
-#include <springfit/ipopt/detail/trajectory.hpp>
+#include <springfit/ipopt/detail/trajectory_impl.hpp>

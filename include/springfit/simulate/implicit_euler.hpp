@@ -50,4 +50,4 @@ private:
 
 } // namespace springfit
 
-#include <springfit/simulate/detail/implicit_euler.hpp>
+#include <springfit/simulate/detail/implicit_euler_impl.hpp>

@@ -38,4 +38,4 @@ private:
 
 } // namespace springfit
 
-#include <springfit/simulate/detail/projective_euler.hpp>
+#include <springfit/simulate/detail/projective_euler_impl.hpp>

@@ -55,4 +55,4 @@ template <int Dim, std::floating_point Scalar>
 
 } // namespace springfit
 
-#include <springfit/simulate/detail/static_solver.hpp>
+#include <springfit/simulate/detail/static_solver_impl.hpp>

@@ -68,4 +68,4 @@ template <int Dim, std::floating_point Scalar>
 
 } // namespace springfit
 
-#include <springfit/simulate/detail/symplectic_euler.hpp>
+#include <springfit/simulate/detail/symplectic_euler_impl.hpp>

@@ -72,4 +72,4 @@ private:
 
 } // namespace springfit
 
-#include <springfit/solve/detail/block_matrix.hpp>
+#include <springfit/solve/detail/block_matrix_impl.hpp>

@@ -60,4 +60,4 @@ private:
 
 } // namespace springfit
 
-#include <springfit/solve/detail/corotated_preconditioner.hpp>
+#include <springfit/solve/detail/corotated_preconditioner_impl.hpp>

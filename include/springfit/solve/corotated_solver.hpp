@@ -52,4 +52,4 @@ private:
 
 } // namespace springfit
 
-#include <springfit/solve/detail/corotated_solver.hpp>
+#include <springfit/solve/detail/corotated_solver_impl.hpp>

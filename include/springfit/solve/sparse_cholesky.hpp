@@ -111,4 +111,4 @@ using SparseCholesky = BasicSparseCholesky<double>;
 
 } // namespace springfit
 
-#include <springfit/solve/detail/sparse_cholesky.hpp>
+#include <springfit/solve/detail/sparse_cholesky_impl.hpp>

@@ -45,4 +45,4 @@ private:
 
 } // namespace springfit
 
-#include <springfit/solve/detail/symmetric_matrix.hpp>
+#include <springfit/solve/detail/symmetric_matrix_impl.hpp>

@@ -77,4 +77,4 @@ private:
 
 } // namespace springfit
 
-#include <springfit/solve/detail/symmetric_solver.hpp>
+#include <springfit/solve/detail/symmetric_solver_impl.hpp>

@@ -37,4 +37,4 @@ template <std::same_as<FitProblem> Problem>
 
 } // namespace springfit
 
-#include <springfit/fit/acceleration/detail/exact.hpp>
+#include <springfit/fit/acceleration/detail/exact_impl.hpp>

@@ -184,4 +184,4 @@ acceleration_problem(const SpringNetwork<Dim, Scalar>& network, const std::vecto
 
 } // namespace springfit
 
-#include <springfit/fit/acceleration/detail/objective.hpp>
+#include <springfit/fit/acceleration/detail/objective_impl.hpp>

@@ -134,4 +134,4 @@ private:
 
 } // namespace springfit
 
-#include <springfit/fit/trajectory/detail/problem.hpp>
+#include <springfit/fit/trajectory/detail/problem_impl.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <springfit/cgal/detail/tetrahedralize.hpp>
+#include <springfit/cgal/detail/tetrahedralize_impl.hpp>
 
 // What springfit::compiled_cgal holds of the templates in springfit/cgal/tetrahedralize.hpp; it alone includes this.
 namespace springfit::cgal {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <springfit/cgal/detail/triangulate.hpp>
+#include <springfit/cgal/detail/triangulate_impl.hpp>
 
 // What springfit::compiled_cgal holds of the templates in springfit/cgal/triangulate.hpp; it alone includes this.
 namespace springfit::cgal {

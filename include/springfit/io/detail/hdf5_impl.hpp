@@ -6,7 +6,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <springfit/io/detail/atomic_file.hpp>
+#include <springfit/io/detail/atomic_file_impl.hpp>
 #include <springfit/io/hdf5.hpp>
 
 namespace springfit::io::hdf5 {

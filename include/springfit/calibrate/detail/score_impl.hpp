@@ -3,7 +3,7 @@
 
 #include <numeric>
 
-#include <springfit/calibrate/detail/candidates.hpp>
+#include <springfit/calibrate/detail/candidates_impl.hpp>
 #include <springfit/calibrate/score.hpp>
 
 namespace springfit {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <springfit/fem/detail/statics.hpp>
+#include <springfit/fem/detail/statics_impl.hpp>
 #include <springfit/fem/dynamics.hpp>
 
 namespace springfit::fem {
