@@ -3,7 +3,7 @@
 
 set(SPRINGFIT_ALL_COMPONENTS core parallel cholmod ipopt io cgal search compiled compiled_cgal)
 
-set(SPRINGFIT_core_ROOMS core mesh solve fem motion network cases step fit closed_form score calibrate)
+set(SPRINGFIT_core_ROOMS core mesh solve fem motion network cases body simulate fit closed_form score calibrate)
 set(SPRINGFIT_core_LINKS Eigen3::Eigen)
 set(SPRINGFIT_parallel_ROOMS parallel)
 set(SPRINGFIT_parallel_LINKS springfit::core TBB::tbb)

@@ -27,8 +27,8 @@ int main() {
     network.stiffness.setConstant(30); // what a spring gets that no motion excites
     AccelerationObjective<2, double> objective(network);
     objective.add(motion);
-    const FitProblem problem = objective.problem();
-    const FitReport report = dominant_term(problem);
+    const AccelerationProblem problem = objective.problem();
+    const AccelerationReport report = dominant_term(problem);
     apply(problem, report, network);
 
     std::printf("%s after %d sweeps; largest relative error of a stiffness %.1e\n",

@@ -65,7 +65,7 @@ int main() {
     apply(motions, gauss_newton(motions), network);
 
     const auto surface = boundary_surface(fine, at_fine);
-    const auto drawn = carry(surface, coarse.nodes, equilibrium(network, replay(at_rest.back())).positions);
+    const auto drawn = deform(surface, coarse.nodes, equilibrium(network, replay(at_rest.back())).positions);
     const Points<2, double> wanted = recordings.back().motion.positions.front()(Eigen::all, boundary_nodes(fine));
     std::printf("%lld springs for %lld triangles; error under an unseen load %.3f, by the closed form %.3f\n",
                 static_cast<long long>(network.n_springs()), static_cast<long long>(fine.n_cells()), error(), before);

@@ -26,7 +26,7 @@ namespace {
 
 } // namespace
 
-std::optional<FitReport> exact_fit([[maybe_unused]] const FitProblem& problem) {
+std::optional<AccelerationReport> exact_fit([[maybe_unused]] const AccelerationProblem& problem) {
 #ifdef SPRINGFIT_STUDY_IPOPT
     return ipopt::exact(problem);
 #else

@@ -65,6 +65,6 @@ interpolation_at(const springfit::Mesh<3, double, springfit::Tet4>& mesh, const 
 random_cut_box(const std::array<int, 3>& cells, const std::array<double, 3>& size, unsigned seed);
 
 /// The exact minimiser of the acceleration fit by Ipopt, the reference; nothing where it is not built in.
-[[nodiscard]] std::optional<springfit::FitReport> exact_fit(const springfit::FitProblem& problem);
+[[nodiscard]] std::optional<springfit::AccelerationReport> exact_fit(const springfit::AccelerationProblem& problem);
 
 } // namespace study

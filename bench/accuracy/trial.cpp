@@ -79,12 +79,12 @@ std::vector<AccelerationFit<Dim>> acceleration_fits(const SpringNetwork<Dim, dou
                                                     const std::vector<Motion<Dim, double>>& training,
                                                     const Settings& settings, int max_sweeps) {
     const auto start = std::chrono::steady_clock::now();
-    const FitProblem problem = acceleration_problem<Dim, double>(prior, training, {}, settings.execution);
+    const AccelerationProblem problem = acceleration_problem<Dim, double>(prior, training, {}, settings.execution);
     const double assembly = seconds_since(start);
     std::vector<AccelerationFit<Dim>> fits;
     const auto add = [&](const char* name, const auto& solve) {
         const auto begin = std::chrono::steady_clock::now();
-        const std::optional<FitReport> fit = solve();
+        const std::optional<AccelerationReport> fit = solve();
         stop_if_interrupted();
         if (fit) {
             fits.push_back({name, prior, fit->objective, assembly + seconds_since(begin)});

@@ -30,7 +30,7 @@ template <int Dim, class Scalar>
 struct Data {
     SpringNetwork<Dim, Scalar> network;
     Motion<Dim, Scalar> motion;
-    FitProblem problem;
+    AccelerationProblem problem;
     SparseMatrix<double> hessian; // both triangles
 };
 
@@ -112,7 +112,7 @@ void plain_sweep(benchmark::State& state, Index springs) {
 template <int Dim, class Scalar, bench::Excitation excitation>
 void exact(benchmark::State& state, Index springs) {
     const auto& d = data<Dim, Scalar>(springs, excitation);
-    FitReport report;
+    AccelerationReport report;
     for (auto _ : state) {
         report = springfit::exact(d.problem);
     }
@@ -163,7 +163,7 @@ void streamed_fit(benchmark::State& state, Index springs) {
     const auto network = bench::network<Dim, Scalar>(springs);
     auto start = network;
     start.stiffness.setConstant(Scalar(bench::start_stiffness));
-    FitReport report;
+    AccelerationReport report;
     for (auto _ : state) {
         bench::Waves<Dim, Scalar> waves(network, bench::Excitation::rich);
         AccelerationObjective<Dim, Scalar> objective(start);

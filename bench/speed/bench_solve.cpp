@@ -35,7 +35,7 @@ std::vector<int> held_face(const SpringNetwork<3, double>& network) {
 SparseMatrix<double> stiffness(const SpringNetwork<3, double>& network) {
     const FreeNodes free(network.n_nodes(), held_face(network));
     auto matrix = spring_matrix(network, free);
-    add_stiffness<3, double>(network, network.rest_positions, Curvature::exact, matrix);
+    add_stiffness<3, double>(network, network.rest_positions, HessianForm::exact, matrix);
     const double small = 1e-6 * matrix.matrix().diagonal().maxCoeff();
     for (Index f = 0; f < free.n_free(); ++f) {
         matrix.add_diagonal(f, small);

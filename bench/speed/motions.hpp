@@ -103,8 +103,8 @@ inline constexpr double start_stiffness = 1000;
 
 /// The fit of a network's springs to its own noisy motion.
 template <int Dim, class Scalar>
-[[nodiscard]] springfit::FitProblem fit_problem(springfit::SpringNetwork<Dim, Scalar> network,
-                                                const springfit::Motion<Dim, Scalar>& motion) {
+[[nodiscard]] springfit::AccelerationProblem fit_problem(springfit::SpringNetwork<Dim, Scalar> network,
+                                                         const springfit::Motion<Dim, Scalar>& motion) {
     network.stiffness.setConstant(Scalar(start_stiffness));
     return springfit::acceleration_problem<Dim, Scalar>(network, {motion});
 }

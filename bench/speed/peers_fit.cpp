@@ -25,11 +25,11 @@ using namespace springfit;
 constexpr double residual = 1e-9;
 
 struct Data {
-    FitProblem problem;
+    AccelerationProblem problem;
     SparseMatrix<double> hessian; ///< both triangles
     bench::peers::ScaledProblem scaled;
 
-    explicit Data(FitProblem made)
+    explicit Data(AccelerationProblem made)
         : problem(std::move(made)), hessian(problem.objective.hessian().selfadjointView<Eigen::Lower>()),
           scaled(problem, residual) {}
 };

@@ -71,7 +71,7 @@ template <int Dim>
 /// The boundary of a fine mesh as the network carries it, and the fine nodes that it consists of.
 template <int Dim>
 struct FineSurface {
-    springfit::CarriedSurface<Dim, double> surface;
+    springfit::EmbeddedSurface<Dim, double> surface;
     std::vector<int> nodes;
 };
 

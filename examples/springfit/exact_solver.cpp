@@ -14,7 +14,7 @@ ExactSolver exact_solver(const std::string& name) {
         return {};
     }
 #ifdef SPRINGFIT_PROGRAM_HAS_IPOPT
-    return [](const FitProblem& problem, const ExactOptions& options) {
+    return [](const AccelerationProblem& problem, const ExactOptions& options) {
         ipopt::ExactOptions how;
         how.initial = options.initial;
         how.progress = options.progress;

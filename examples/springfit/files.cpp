@@ -59,7 +59,7 @@ void write_shown_motion(io::OutputGroup& outputs, const std::filesystem::path& f
     if (fine) {
         const auto& [surface, nodes] = fine->surface;
         write("surface.h5", motion_at(fine->held_out.motions.front(), nodes), io::motion_topology(surface),
-              carry(surface, fitted));
+              deform(surface, fitted));
     } else { // what a run with a finer reference left there is of another network
         outputs.remove(folder / "surface.h5");
         outputs.remove(folder / "surface.xdmf");

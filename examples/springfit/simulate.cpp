@@ -74,7 +74,7 @@ int simulate_model(const io::Model<Dim, double>& model, const SimulateOptions& o
         body.name = recording.motion.name;
         body.rest_positions = model.surface->rest_positions;
         body.clamped = targets_of(model.surface->from_nodes, recording.motion.clamped);
-        write("surface.h5", body, io::motion_topology(*model.surface), carry(*model.surface, recording.motion));
+        write("surface.h5", body, io::motion_topology(*model.surface), deform(*model.surface, recording.motion));
     } else { // what a run of another model left there
         outputs.remove(folder.path() / "surface.h5");
         outputs.remove(folder.path() / "surface.xdmf");

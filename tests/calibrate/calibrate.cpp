@@ -141,7 +141,7 @@ TEST_CASE("methods that are asked for are returned") {
          {std::pair{Method::closed_form, "given"}, std::pair{Method::trajectory, "trajectory"},
           std::pair{Method::dominant_term, "dominant_term"}, std::pair{Method::exact, "exact"}}) {
         options.method = method;
-        options.exact_solver = [&](const FitProblem& problem, const ExactOptions& how) {
+        options.exact_solver = [&](const AccelerationProblem& problem, const ExactOptions& how) {
             ++asked;
             return exact(problem, how);
         };

@@ -102,12 +102,12 @@ TEST_CASE_TEMPLATE("one pass and sweeps recover a spring model", T, SPRINGFIT_TE
             network.damping.setConstant(0);
             AccelerationOptions<Scalar> options;
             options.parameters.damping.fit = damped;
-            const FitProblem problem = acceleration_problem<dim, Scalar>(network, {motion}, options);
-            const FitReport pass = one_pass(problem);
-            const FitReport from_pass = dominant_term(problem);
-            const FitReport from_prior =
+            const AccelerationProblem problem = acceleration_problem<dim, Scalar>(network, {motion}, options);
+            const AccelerationReport pass = one_pass(problem);
+            const AccelerationReport from_pass = dominant_term(problem);
+            const AccelerationReport from_prior =
                 dominant_term(problem, {.max_sweeps = 300, .tolerance = 1e-12, .start = SweepStart::given});
-            for (const FitReport* report : {&pass, &from_pass, &from_prior}) {
+            for (const AccelerationReport* report : {&pass, &from_pass, &from_prior}) {
                 CHECK(usable(report->status));
                 CHECK(report->kkt_residual < (in_double ? 1e-9 : 1e-5));
                 auto fitted = network;
@@ -141,8 +141,8 @@ TEST_CASE_TEMPLATE("rest lengths are fitted, and known damping is taken off", T,
         network.damping = truth.damping;
         AccelerationOptions<Scalar> options;
         options.parameters.preload.fit = true;
-        const FitProblem problem = acceleration_problem<dim, Scalar>(network, {motion}, options);
-        for (const FitReport& report : {one_pass(problem), dominant_term(problem)}) {
+        const AccelerationProblem problem = acceleration_problem<dim, Scalar>(network, {motion}, options);
+        for (const AccelerationReport& report : {one_pass(problem), dominant_term(problem)}) {
             auto fitted = network;
             apply(problem, report, fitted);
             const double tolerance = in_double ? 1e-6 : 1e-3;
@@ -158,7 +158,7 @@ TEST_CASE_TEMPLATE("rest lengths are fitted, and known damping is taken off", T,
         options = {};
         options.parameters.stiffness.fit = false;
         options.parameters.damping.fit = true;
-        const FitProblem damping = acceleration_problem<dim, Scalar>(network, {motion}, options);
+        const AccelerationProblem damping = acceleration_problem<dim, Scalar>(network, {motion}, options);
         apply(damping, one_pass(damping), network);
         CHECK(test::relative_error(damping.parameters, ParameterKind::damping, network.damping, truth.damping) <
               (in_double ? 1e-6 : 1e-2));
@@ -180,8 +180,8 @@ TEST_CASE_TEMPLATE("damping that follows stiffness needs no unknown of its own",
         network.damping.setConstant(9); // replaced
         AccelerationOptions<Scalar> options;
         options.parameters.damping_per_stiffness = 2e-3;
-        const FitProblem problem = acceleration_problem<dim, Scalar>(network, {motion}, options);
-        for (const FitReport& report : {one_pass(problem), dominant_term(problem)}) {
+        const AccelerationProblem problem = acceleration_problem<dim, Scalar>(network, {motion}, options);
+        for (const AccelerationReport& report : {one_pass(problem), dominant_term(problem)}) {
             auto fitted = network;
             apply(problem, report, fitted);
             for (ParameterKind kind : {ParameterKind::stiffness, ParameterKind::damping}) {
@@ -222,8 +222,8 @@ TEST_CASE_TEMPLATE("a spring that no motion excites gets its prior and is report
     }
     network.stiffness.setConstant(5);
     network.stiffness(quiet) = 17;
-    const FitProblem problem = acceleration_problem<dim, Scalar>(network, {motion});
-    for (const FitReport& report : {one_pass(problem), dominant_term(problem)}) {
+    const AccelerationProblem problem = acceleration_problem<dim, Scalar>(network, {motion});
+    for (const AccelerationReport& report : {one_pass(problem), dominant_term(problem)}) {
         CHECK(report.not_identified == std::vector<SpringParameter>{{ParameterKind::stiffness, quiet}});
         CHECK(report.theta.allFinite());
         auto fitted = network;
@@ -234,7 +234,7 @@ TEST_CASE_TEMPLATE("a spring that no motion excites gets its prior and is report
               (std::same_as<Scalar, double> ? 1e-6 : 1e-3));
     }
     // No motion at all: everything is prior.
-    const FitProblem nothing = AccelerationObjective<dim, Scalar>(network).problem();
+    const AccelerationProblem nothing = AccelerationObjective<dim, Scalar>(network).problem();
     CHECK(nothing.n_unknowns() == 0);
     auto rest = motion;
     for (auto& x : rest.positions) {
@@ -245,8 +245,8 @@ TEST_CASE_TEMPLATE("a spring that no motion excites gets its prior and is report
             frame.setZero();
         }
     }
-    const FitProblem still = acceleration_problem<dim, Scalar>(network, {rest});
-    const FitReport report = dominant_term(still, {.start = SweepStart::given});
+    const AccelerationProblem still = acceleration_problem<dim, Scalar>(network, {rest});
+    const AccelerationReport report = dominant_term(still, {.start = SweepStart::given});
     CHECK(report.theta.allFinite());
     if (std::same_as<Scalar, double>) {
         CHECK(report.objective < 1e-24); // strains of rounding only
@@ -265,8 +265,8 @@ TEST_CASE_TEMPLATE("bounds hold to the last bit and active ones push the right w
         AccelerationOptions<Scalar> options;
         options.parameters.stiffness.lower = 250; // the truth spreads from 100 to 1000
         options.parameters.stiffness.upper = 600;
-        const FitProblem problem = acceleration_problem<dim, Scalar>(network, {motion}, options);
-        const FitReport report = dominant_term(problem, {.max_sweeps = 2000, .tolerance = 1e-10});
+        const AccelerationProblem problem = acceleration_problem<dim, Scalar>(network, {motion}, options);
+        const AccelerationReport report = dominant_term(problem, {.max_sweeps = 2000, .tolerance = 1e-10});
         CHECK(report.status == Status::converged);
         CHECK(report.theta.minCoeff() == 250);
         CHECK(report.theta.maxCoeff() == 600);
@@ -284,8 +284,8 @@ TEST_CASE_TEMPLATE("bounds hold to the last bit and active ones push the right w
         // Equal bounds fix the value; the rest of the world goes on.
         options.parameters.stiffness.lower = options.parameters.stiffness.upper = 400;
         options.parameters.damping.fit = true;
-        const FitProblem fixed = acceleration_problem<dim, Scalar>(network, {motion}, options);
-        const FitReport with_fixed = dominant_term(fixed, {.max_sweeps = 500});
+        const AccelerationProblem fixed = acceleration_problem<dim, Scalar>(network, {motion}, options);
+        const AccelerationReport with_fixed = dominant_term(fixed, {.max_sweeps = 500});
         CHECK((fixed.parameters.per_spring(ParameterKind::stiffness, with_fixed.theta).array() == 400).count() >=
               problem.n_unknowns());
         CHECK(with_fixed.objective < fixed.objective.value(fixed.prior));
@@ -311,20 +311,20 @@ TEST_CASE_TEMPLATE("ties give one value per group", T, SPRINGFIT_TEST_SPACES) {
         }
         // Three frames would not do for free springs.
         const auto motion = test::random_motion<dim, Scalar>(truth, body.clamped, 3, random);
-        const FitProblem problem = acceleration_problem<dim, Scalar>(body.network, {motion}, options);
+        const AccelerationProblem problem = acceleration_problem<dim, Scalar>(body.network, {motion}, options);
         CHECK(problem.n_unknowns() == 4);
         CHECK((body.network.mass.array() == 1).all());
         auto with_masses = body.network;
         with_masses.mass = truth.mass;
-        const FitProblem right = acceleration_problem<dim, Scalar>(with_masses, {motion}, options);
-        for (const FitReport& report : {one_pass(right), dominant_term(right)}) {
+        const AccelerationProblem right = acceleration_problem<dim, Scalar>(with_masses, {motion}, options);
+        for (const AccelerationReport& report : {one_pass(right), dominant_term(right)}) {
             auto fitted = with_masses;
             apply(right, report, fitted);
             CHECK(test::relative_difference(fitted.stiffness, truth.stiffness) < (in_double ? 1e-6 : 1e-3));
             CHECK(test::relative_difference(fitted.damping, truth.damping) < (in_double ? 1e-6 : 1e-2));
         }
         // With the wrong masses nothing fits; one block is the whole problem, so the first sweep ends it.
-        const FitReport wrong = dominant_term(problem, {.tolerance = 1e-8});
+        const AccelerationReport wrong = dominant_term(problem, {.tolerance = 1e-8});
         CHECK(wrong.status == Status::converged);
         CHECK(wrong.objective > 0);
     }
@@ -348,9 +348,9 @@ TEST_CASE_TEMPLATE("sweeps never raise the objective, on a solid that springs ca
     auto network = test::network_at_rest<dim, double>(mesh.nodes, edges(mesh));
     network.mass.setConstant(0.01);
     const auto motion = test::vibration<dim>(network, test::simplex_stiffness(mesh, 1000., 0.45), 60, 1e-3, random);
-    const FitProblem problem = acceleration_problem<dim, double>(network, {motion});
+    const AccelerationProblem problem = acceleration_problem<dim, double>(network, {motion});
     for (const SweepStart start : {SweepStart::one_pass, SweepStart::given, SweepStart::better}) {
-        const FitReport report = dominant_term(problem, {.max_sweeps = 50, .tolerance = 0, .start = start});
+        const AccelerationReport report = dominant_term(problem, {.max_sweeps = 50, .tolerance = 0, .start = start});
         double before = report.objective_start;
         CHECK(report.history.size() == std::size_t(report.iterations));
         for (double value : report.history) {
@@ -369,7 +369,7 @@ TEST_CASE_TEMPLATE("sweeps never raise the objective, on a solid that springs ca
 
     // A stop asked for after the third sweep keeps what the third sweep found.
     int calls = 0;
-    const FitReport stopped =
+    const AccelerationReport stopped =
         dominant_term(problem, {.tolerance = 0, .progress = [&](const Progress&) { return ++calls < 3; }});
     CHECK(stopped.status == Status::interrupted);
     CHECK(stopped.iterations == 3);

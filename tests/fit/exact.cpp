@@ -14,9 +14,9 @@ using test::Random;
 namespace {
 
 /// A problem with unknowns of stiffness alone, made from a quadratic and bounds.
-FitProblem box_problem(NodeQuadratic objective, const Values<double>& lower, const Values<double>& upper,
-                       const Values<double>& start) {
-    FitProblem problem;
+AccelerationProblem box_problem(NodeQuadratic objective, const Values<double>& lower, const Values<double>& upper,
+                                const Values<double>& start) {
+    AccelerationProblem problem;
     const auto n = static_cast<int>(start.size());
     SpringNetwork<2, double> chain;
     chain.rest_positions = Points<2, double>::Zero(2, n + 1);
@@ -72,7 +72,7 @@ NodeQuadratic string_under_weight(int n) {
 }
 
 /// The bounds hold, what the report says is so, and no multiplier has the wrong sign.
-void check_report(const FitProblem& problem, const FitReport& report) {
+void check_report(const AccelerationProblem& problem, const AccelerationReport& report) {
     REQUIRE(report.theta.size() == problem.n_unknowns());
     CHECK((report.theta.array() >= problem.lower.array()).all());
     CHECK((report.theta.array() <= problem.upper.array()).all());
@@ -104,8 +104,8 @@ auto grid(int n) {
 
 /// Linear elasticity on a grid, its springs, and motion of the kind asked for, such that many bounds are active.
 template <int Dim>
-FitProblem elastic_problem(int n, int n_fields, double wave, double amplitude, int frames, Random& random,
-                           double lower = 0) {
+AccelerationProblem elastic_problem(int n, int n_fields, double wave, double amplitude, int frames, Random& random,
+                                    double lower = 0) {
     const auto mesh = grid<Dim>(n);
     auto network = test::network_at_rest<Dim, double>(mesh.nodes, edges(mesh));
     network.stiffness.setConstant(100);
@@ -135,8 +135,9 @@ TEST_CASE("unknowns of their own: each is g / h, or the bound before it") {
     g << 3, -2, 2, 5e6, 2e-6, 3, -5, 70, 8;
     const Values<double> lower = Values<double>::Constant(n, -0.5);
     const Values<double> upper = Values<double>::Constant(n, 4);
-    const FitProblem problem = box_problem(dense(h.asDiagonal(), g, 1e9), lower, upper, Values<double>::Ones(n));
-    const FitReport report = exact(problem);
+    const AccelerationProblem problem =
+        box_problem(dense(h.asDiagonal(), g, 1e9), lower, upper, Values<double>::Ones(n));
+    const AccelerationReport report = exact(problem);
     CHECK(report.status == Status::converged);
     const double scale = 5e6 / 1e3; // the largest |g| / sqrt(h)
     for (Index u = 0; u < n; ++u) {
@@ -163,7 +164,7 @@ TEST_CASE_TEMPLATE("one spring: its stiffness from one frame", T, SPRINGFIT_TEST
     motion.external_forces = motion.velocities;
     motion.accelerations = motion.velocities;
     motion.accelerations[0](0, 1) = -2; // mass 1, stretch 1/4
-    const FitReport report = exact(acceleration_problem<dim, Scalar>(network, {motion}));
+    const AccelerationReport report = exact(acceleration_problem<dim, Scalar>(network, {motion}));
     CHECK(report.status == Status::converged);
     CHECK(test::relative(report.theta(0), 8., 8.) < 1e-12);
     AccelerationOptions<Scalar> options;
@@ -199,8 +200,8 @@ TEST_CASE_TEMPLATE("a spring model is recovered, with damping, preload and ties"
             const auto motion = test::random_motion<dim, Scalar>(truth, body.clamped, 60, random);
             auto network = body.network;
             network.mass = truth.mass;
-            const FitProblem problem = acceleration_problem<dim, Scalar>(network, {motion}, options);
-            const FitReport report = exact(problem, {.tolerance = 1e-14});
+            const AccelerationProblem problem = acceleration_problem<dim, Scalar>(network, {motion}, options);
+            const AccelerationReport report = exact(problem, {.tolerance = 1e-14});
             CHECK(usable(report.status));
             check_report(problem, report);
             apply(problem, report, network);
@@ -227,16 +228,16 @@ TEST_CASE_TEMPLATE("active bounds: on the bound to the last bit, as projected Ne
     AccelerationOptions<Scalar> options;
     options.parameters.stiffness.lower = 250;
     options.parameters.stiffness.upper = 600;
-    const FitProblem problem = acceleration_problem<dim, Scalar>(body.network, {motion}, options);
-    const FitReport report = exact(problem);
+    const AccelerationProblem problem = acceleration_problem<dim, Scalar>(body.network, {motion}, options);
+    const AccelerationReport report = exact(problem);
     CHECK(report.status == Status::converged);
     check_report(problem, report);
     CHECK(report.kkt_residual <= 1e-10);
     CHECK(report.at_lower.size() > 0);
     CHECK(report.at_upper.size() > 0);
-    const FitReport sweeps = dominant_term(problem, {.max_sweeps = 2000, .tolerance = 1e-12});
+    const AccelerationReport sweeps = dominant_term(problem, {.max_sweeps = 2000, .tolerance = 1e-12});
     CHECK(test::relative_difference(report.theta, sweeps.theta) < 1e-8);
-    const FitReport warm = exact(problem, {.initial = report.theta});
+    const AccelerationReport warm = exact(problem, {.initial = report.theta});
     CHECK(warm.iterations == 0);
     CHECK(warm.theta == report.theta);
 }
@@ -244,8 +245,9 @@ TEST_CASE_TEMPLATE("active bounds: on the bound to the last bit, as projected Ne
 TEST_CASE_TEMPLATE("elastic motion with many bounds active", T, test::Space<2, double>, test::Space<3, double>) {
     constexpr int dim = T::dimension;
     Random random(73);
-    const FitProblem problem = elastic_problem<dim>(dim == 2 ? 12 : 5, 12, 2, 1e-2, 40, random, dim == 2 ? 300 : 0);
-    const FitReport report = exact(problem);
+    const AccelerationProblem problem =
+        elastic_problem<dim>(dim == 2 ? 12 : 5, 12, 2, 1e-2, 40, random, dim == 2 ? 300 : 0);
+    const AccelerationReport report = exact(problem);
     CHECK(report.status == Status::converged);
     check_report(problem, report);
     CHECK(report.kkt_residual <= 1e-10);
@@ -256,8 +258,8 @@ TEST_CASE_TEMPLATE("two long waves tell springs apart badly, and still", T, test
                    test::Space<3, double>) {
     constexpr int dim = T::dimension;
     Random random(74);
-    const FitProblem problem = elastic_problem<dim>(dim == 2 ? 20 : 7, 2, 0.3, 1e-3, 40, random);
-    const FitReport report = exact(problem);
+    const AccelerationProblem problem = elastic_problem<dim>(dim == 2 ? 20 : 7, 2, 0.3, 1e-3, 40, random);
+    const AccelerationReport report = exact(problem);
     CHECK(report.status == Status::converged);
     check_report(problem, report);
     CHECK(report.products > 100);
@@ -267,7 +269,8 @@ TEST_CASE("a string under its weight: conjugate gradients give way to Cholesky")
     // 1/2 sum (theta_{i+1} - theta_i)^2 - sum theta_i with both ends at 0 has the minimiser i (n + 1 - i) / 2.
     const int n = 3000;
     const Values<double> anything = Values<double>::Constant(n, std::numeric_limits<double>::infinity());
-    const FitReport report = exact(box_problem(string_under_weight(n), -anything, anything, Values<double>::Zero(n)));
+    const AccelerationReport report =
+        exact(box_problem(string_under_weight(n), -anything, anything, Values<double>::Zero(n)));
     CHECK(report.status == Status::converged);
     CHECK(report.factorisations > 0);
     for (int i = 1; i <= n; ++i) {
@@ -278,9 +281,9 @@ TEST_CASE("a string under its weight: conjugate gradients give way to Cholesky")
 TEST_CASE("a string under its weight above a floor: a parabola that touches it, and the floor") {
     const int n = 300;
     const double floor = 0.0625 * n * n; // at half its depth
-    const FitProblem problem = box_problem(string_under_weight(n), Values<double>::Zero(n),
-                                           Values<double>::Constant(n, floor), Values<double>::Zero(n));
-    const FitReport report = exact(problem);
+    const AccelerationProblem problem = box_problem(string_under_weight(n), Values<double>::Zero(n),
+                                                    Values<double>::Constant(n, floor), Values<double>::Zero(n));
+    const AccelerationReport report = exact(problem);
     CHECK(report.status == Status::converged);
     check_report(problem, report);
     const double touch = std::sqrt(2 * floor); // a parabola of curvature 1 is level there
@@ -303,9 +306,10 @@ TEST_CASE("sets that go round in circles are settled by a pull to where they are
         h.diagonal().array() += trial % 3 == 0 ? 1e-6 : 1e-3;
         const Values<double> g = random.points<3, double>(n, 2).row(0).transpose();
         const Values<double> start = Values<double>::Constant(n, random(0, 0.5));
-        FitProblem problem = box_problem(dense(h, g, 1e3), Values<double>::Zero(n), Values<double>::Ones(n), start);
+        AccelerationProblem problem =
+            box_problem(dense(h, g, 1e3), Values<double>::Zero(n), Values<double>::Ones(n), start);
         problem.upper.setConstant(trial % 2 == 0 ? 1 : std::numeric_limits<double>::infinity());
-        const FitReport report = exact(problem);
+        const AccelerationReport report = exact(problem);
         CHECK((report.status == Status::converged || report.status == Status::stalled));
         CHECK(report.kkt_residual <= 1e-9); // rounding times a condition of 1e7
         check_report(problem, report);
@@ -325,8 +329,8 @@ TEST_CASE("held unknowns stay, and nothing to solve is no failure") {
     const auto motion = test::random_motion<2, double>(body.network, body.clamped, 20, random);
     AccelerationOptions<double> options;
     options.parameters.stiffness.lower = options.parameters.stiffness.upper = 400;
-    const FitProblem held = acceleration_problem<2, double>(body.network, {motion}, options);
-    FitReport report = exact(held);
+    const AccelerationProblem held = acceleration_problem<2, double>(body.network, {motion}, options);
+    AccelerationReport report = exact(held);
     CHECK(report.status == Status::converged);
     CHECK((report.theta.array() == 400).all());
     CHECK(report.iterations == 0);
@@ -359,9 +363,9 @@ TEST_CASE("what is not a number is never certified") {
         wrong_g(u) = nan;
         DenseMatrix<double> wrong_h = h;
         wrong_h(u, u) = nan;
-        for (const FitProblem& wrong : {problem(h, wrong_g), problem(wrong_h, g)}) {
+        for (const AccelerationProblem& wrong : {problem(h, wrong_g), problem(wrong_h, g)}) {
             CHECK(std::isnan(kkt_residual(wrong, g)));
-            for (const FitReport& report : {exact(wrong), dominant_term(wrong)}) {
+            for (const AccelerationReport& report : {exact(wrong), dominant_term(wrong)}) {
                 CHECK(report.status == Status::diverged);
                 CHECK(std::isnan(report.kkt_residual));
                 CHECK(report.theta == g); // the start
@@ -374,22 +378,22 @@ TEST_CASE("what is not a number is never certified") {
 
 TEST_CASE("a stop returns the best so far, an exception comes through, a wrong option is refused") {
     Random random(77);
-    const FitProblem problem = elastic_problem<3>(4, 12, 2, 1e-2, 40, random);
-    const FitReport whole = exact(problem);
+    const AccelerationProblem problem = elastic_problem<3>(4, 12, 2, 1e-2, 40, random);
+    const AccelerationReport whole = exact(problem);
     for (int stop = 0; stop < 4; ++stop) {
         CAPTURE(stop);
         int calls = 0;
-        const FitReport report = exact(problem, {.progress = [&](const Progress& p) {
-                                           CHECK(p.stage == "exact fit");
-                                           CHECK((p.fraction >= 0 && p.fraction <= 1));
-                                           return calls++ < stop;
-                                       }});
+        const AccelerationReport report = exact(problem, {.progress = [&](const Progress& p) {
+                                                    CHECK(p.stage == "exact fit");
+                                                    CHECK((p.fraction >= 0 && p.fraction <= 1));
+                                                    return calls++ < stop;
+                                                }});
         CHECK(report.status == Status::interrupted);
         CHECK(calls == stop + 1);
         check_report(problem, report);
         CHECK(report.objective >= whole.objective * (1 - 1e-12));
     }
-    const FitReport limited = exact(problem, {.max_iterations = 2});
+    const AccelerationReport limited = exact(problem, {.max_iterations = 2});
     CHECK(limited.status == Status::iteration_limit);
     CHECK(limited.iterations == 2);
     check_report(problem, limited);

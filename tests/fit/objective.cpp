@@ -66,7 +66,7 @@ void append_rows(const SpringNetwork<Dim, Scalar>& network, const Motion<Dim, Sc
 }
 
 template <int Dim, class Scalar>
-void check_against_rows(const FitProblem& problem, const Rows& rows, Random& random) {
+void check_against_rows(const AccelerationProblem& problem, const Rows& rows, Random& random) {
     const auto& objective = problem.objective;
     Values<double> theta(problem.n_unknowns());
     for (double& value : theta) {
@@ -118,7 +118,7 @@ TEST_CASE_TEMPLATE("the streamed objective is that of the rows", T, SPRINGFIT_TE
             AccelerationObjective<dim, Scalar> objective(network, options);
             objective.add(first, 0.5);
             objective.add(second);
-            const FitProblem problem = objective.problem();
+            const AccelerationProblem problem = objective.problem();
             const Values<double> m = network.mass.template cast<double>();
             if (options.weighting == NodeWeighting::mass) {
                 weights = weights.cwiseProduct(m);
@@ -150,8 +150,8 @@ TEST_CASE_TEMPLATE("frame by frame is the same as a motion, on any number of thr
         frames.add_frame(motion.positions[t], motion.velocities[t], motion.accelerations[t], motion.external_forces[t],
                          motion.clamped);
     }
-    const FitProblem a = whole.problem();
-    const FitProblem b = frames.problem();
+    const AccelerationProblem a = whole.problem();
+    const AccelerationProblem b = frames.problem();
     CHECK(a.objective.linear() == b.objective.linear());
     CHECK((a.objective.hessian() - b.objective.hessian()).norm() == 0);
     CHECK(one_pass(a).theta == one_pass(b, {.execution = test::backwards_on_threads()}).theta);
@@ -182,7 +182,7 @@ TEST_CASE_TEMPLATE("cells act as the network gives them: its springs are found, 
     }
     const auto motion = test::random_motion<dim, Scalar>(network, body.clamped, 40, random);
     const auto error_with = [&](const SpringNetwork<dim, Scalar>& known) {
-        const FitProblem problem = acceleration_problem<dim, Scalar>(known, {motion});
+        const AccelerationProblem problem = acceleration_problem<dim, Scalar>(known, {motion});
         const DenseMatrix<double> lower = problem.objective.hessian();
         const Values<double> theta =
             DenseMatrix<double>(lower.selfadjointView<Eigen::Lower>())
@@ -261,10 +261,10 @@ TEST_CASE_TEMPLATE("springs that never move freely have no unknown; ties give th
     REQUIRE(network.springs(1, between) == 1);
     network.stiffness(between) = 42;
 
-    FitProblem problem = acceleration_problem<dim, Scalar>(network, {motion});
+    AccelerationProblem problem = acceleration_problem<dim, Scalar>(network, {motion});
     CHECK(problem.n_unknowns() == network.n_springs() - 1);
     CHECK(problem.parameters.without_unknown() == std::vector<SpringParameter>{{ParameterKind::stiffness, between}});
-    const FitReport report = one_pass(problem);
+    const AccelerationReport report = one_pass(problem);
     CHECK(report.without_unknown.size() == 1);
     apply(problem, report, network);
     CHECK(network.stiffness(between) == 42);
@@ -292,7 +292,7 @@ TEST_CASE_TEMPLATE("springs that never move freely have no unknown; ties give th
     std::iota(still.clamped.begin(), still.clamped.end(), 0);
     problem = acceleration_problem<dim, Scalar>(network, {still});
     CHECK(problem.n_unknowns() == 0);
-    for (const FitReport& r : {one_pass(problem), dominant_term(problem)}) {
+    for (const AccelerationReport& r : {one_pass(problem), dominant_term(problem)}) {
         CHECK(r.status == Status::converged);
         const auto before = network.stiffness;
         apply(problem, r, network);
@@ -309,8 +309,8 @@ TEST_CASE("a ridge pulls to the prior, the more the less the data says") {
     AccelerationOptions<double> options;
     options.parameters.stiffness.prior = Values<double>::Constant(body.network.n_springs(), 7.);
     options.parameters.ridge = 1e6;
-    const FitProblem strong = acceleration_problem<2, double>(body.network, {motion}, options);
-    const FitReport report = dominant_term(strong);
+    const AccelerationProblem strong = acceleration_problem<2, double>(body.network, {motion}, options);
+    const AccelerationReport report = dominant_term(strong);
     CHECK(report.status == Status::converged);
     CHECK((report.theta.array() - 7).abs().maxCoeff() < 1e-2);
     CHECK(test::relative(strong.objective.value(strong.prior),

@@ -24,10 +24,10 @@ TEST_CASE_TEMPLATE("the same bits on any number of threads", T, SPRINGFIT_TEST_S
     const auto motion = test::random_motion<dim, Scalar>(network, {0, 1}, 40, random);
     AccelerationOptions<Scalar> options;
     options.parameters.damping.fit = true;
-    const FitProblem alone = acceleration_problem<dim, Scalar>(network, {motion}, options);
+    const AccelerationProblem alone = acceleration_problem<dim, Scalar>(network, {motion}, options);
     for (int threads : {1, 2, 4}) {
         const Execution execution = test::backwards_on_threads(threads);
-        const FitProblem problem = acceleration_problem<dim, Scalar>(network, {motion}, options, execution);
+        const AccelerationProblem problem = acceleration_problem<dim, Scalar>(network, {motion}, options, execution);
         CHECK(problem.objective.linear() == alone.objective.linear());
         CHECK(problem.objective.value(problem.prior) == alone.objective.value(alone.prior));
         CHECK(one_pass(problem, {.execution = execution}).theta == one_pass(alone).theta);

@@ -412,7 +412,7 @@ TEST_CASE_TEMPLATE("a horizon of one short step is the acceleration fit", T, Dim
 
         AccelerationOptions<double> accelerations;
         accelerations.parameters.stiffness.lower = 1e-3;
-        const FitProblem quadratic = acceleration_problem<Dim, double>(prior, {starts}, accelerations);
+        const AccelerationProblem quadratic = acceleration_problem<Dim, double>(prior, {starts}, accelerations);
         DominantTermOptions sweeps;
         sweeps.max_sweeps = 20000;
         sweeps.tolerance = 1e-14;

@@ -16,9 +16,9 @@ SPRINGFIT_INSTANTIATION void add_forces(const BiquadraticNetwork<2, double>&, co
 SPRINGFIT_INSTANTIATION void compute_accelerations(const BiquadraticNetwork<2, double>&, const Points<2, double>&,
                                                    const Points<2, double>&, const Points<2, double>&,
                                                    Points<2, double>&);
-SPRINGFIT_INSTANTIATION CliqueMatrix<2, double> triangle_matrix(const BiquadraticNetwork<2, double>&, const FreeNodes&);
-SPRINGFIT_INSTANTIATION void add_stiffness(const BiquadraticNetwork<2, double>&, const Points<2, double>&, Curvature,
-                                           CliqueMatrix<2, double>&);
+SPRINGFIT_INSTANTIATION BlockMatrix<2, double> triangle_matrix(const BiquadraticNetwork<2, double>&, const FreeNodes&);
+SPRINGFIT_INSTANTIATION void add_stiffness(const BiquadraticNetwork<2, double>&, const Points<2, double>&, HessianForm,
+                                           BlockMatrix<2, double>&);
 SPRINGFIT_INSTANTIATION double stable_step_at(const BiquadraticNetwork<2, double>&, const Points<2, double>&);
 SPRINGFIT_INSTANTIATION void validate(const BiquadraticNetwork<3, double>&);
 SPRINGFIT_INSTANTIATION BiquadraticNetwork<3, double> biquadratic_network(const Mesh<3, double, Tri3>&,
@@ -33,9 +33,9 @@ SPRINGFIT_INSTANTIATION void add_forces(const BiquadraticNetwork<3, double>&, co
 SPRINGFIT_INSTANTIATION void compute_accelerations(const BiquadraticNetwork<3, double>&, const Points<3, double>&,
                                                    const Points<3, double>&, const Points<3, double>&,
                                                    Points<3, double>&);
-SPRINGFIT_INSTANTIATION CliqueMatrix<3, double> triangle_matrix(const BiquadraticNetwork<3, double>&, const FreeNodes&);
-SPRINGFIT_INSTANTIATION void add_stiffness(const BiquadraticNetwork<3, double>&, const Points<3, double>&, Curvature,
-                                           CliqueMatrix<3, double>&);
+SPRINGFIT_INSTANTIATION BlockMatrix<3, double> triangle_matrix(const BiquadraticNetwork<3, double>&, const FreeNodes&);
+SPRINGFIT_INSTANTIATION void add_stiffness(const BiquadraticNetwork<3, double>&, const Points<3, double>&, HessianForm,
+                                           BlockMatrix<3, double>&);
 SPRINGFIT_INSTANTIATION double stable_step_at(const BiquadraticNetwork<3, double>&, const Points<3, double>&);
 SPRINGFIT_INSTANTIATION void validate(const BiquadraticNetwork<2, float>&);
 SPRINGFIT_INSTANTIATION BiquadraticNetwork<2, float> biquadratic_network(const Mesh<2, float, Tri3>&,
@@ -49,9 +49,9 @@ SPRINGFIT_INSTANTIATION void add_forces(const BiquadraticNetwork<2, float>&, con
                                         const Points<2, float>&, Points<2, float>&);
 SPRINGFIT_INSTANTIATION void compute_accelerations(const BiquadraticNetwork<2, float>&, const Points<2, float>&,
                                                    const Points<2, float>&, const Points<2, float>&, Points<2, float>&);
-SPRINGFIT_INSTANTIATION CliqueMatrix<2, float> triangle_matrix(const BiquadraticNetwork<2, float>&, const FreeNodes&);
-SPRINGFIT_INSTANTIATION void add_stiffness(const BiquadraticNetwork<2, float>&, const Points<2, float>&, Curvature,
-                                           CliqueMatrix<2, float>&);
+SPRINGFIT_INSTANTIATION BlockMatrix<2, float> triangle_matrix(const BiquadraticNetwork<2, float>&, const FreeNodes&);
+SPRINGFIT_INSTANTIATION void add_stiffness(const BiquadraticNetwork<2, float>&, const Points<2, float>&, HessianForm,
+                                           BlockMatrix<2, float>&);
 SPRINGFIT_INSTANTIATION float stable_step_at(const BiquadraticNetwork<2, float>&, const Points<2, float>&);
 SPRINGFIT_INSTANTIATION void validate(const BiquadraticNetwork<3, float>&);
 SPRINGFIT_INSTANTIATION BiquadraticNetwork<3, float> biquadratic_network(const Mesh<3, float, Tri3>&,
@@ -65,9 +65,9 @@ SPRINGFIT_INSTANTIATION void add_forces(const BiquadraticNetwork<3, float>&, con
                                         const Points<3, float>&, Points<3, float>&);
 SPRINGFIT_INSTANTIATION void compute_accelerations(const BiquadraticNetwork<3, float>&, const Points<3, float>&,
                                                    const Points<3, float>&, const Points<3, float>&, Points<3, float>&);
-SPRINGFIT_INSTANTIATION CliqueMatrix<3, float> triangle_matrix(const BiquadraticNetwork<3, float>&, const FreeNodes&);
-SPRINGFIT_INSTANTIATION void add_stiffness(const BiquadraticNetwork<3, float>&, const Points<3, float>&, Curvature,
-                                           CliqueMatrix<3, float>&);
+SPRINGFIT_INSTANTIATION BlockMatrix<3, float> triangle_matrix(const BiquadraticNetwork<3, float>&, const FreeNodes&);
+SPRINGFIT_INSTANTIATION void add_stiffness(const BiquadraticNetwork<3, float>&, const Points<3, float>&, HessianForm,
+                                           BlockMatrix<3, float>&);
 SPRINGFIT_INSTANTIATION float stable_step_at(const BiquadraticNetwork<3, float>&, const Points<3, float>&);
 
 } // namespace springfit

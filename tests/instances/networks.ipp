@@ -14,7 +14,7 @@ SPRINGFIT_INSTANTIATION void add_spring_forces(const SpringNetwork<2, double>&, 
 SPRINGFIT_INSTANTIATION double volume_energy(const SpringNetwork<2, double>&, const Points<2, double>&);
 SPRINGFIT_INSTANTIATION void add_volume_forces(const SpringNetwork<2, double>&, const Points<2, double>&,
                                                Points<2, double>&);
-SPRINGFIT_INSTANTIATION CliqueMatrix<2, double> spring_matrix(const SpringNetwork<2, double>&, const FreeNodes&);
+SPRINGFIT_INSTANTIATION BlockMatrix<2, double> spring_matrix(const SpringNetwork<2, double>&, const FreeNodes&);
 SPRINGFIT_INSTANTIATION double stable_step_at(const SpringNetwork<2, double>&, const Points<2, double>&,
                                               const std::vector<int>&);
 SPRINGFIT_INSTANTIATION std::vector<int> clamped_nodes(const Scenario<2, double>&, Index);
@@ -30,7 +30,7 @@ SPRINGFIT_INSTANTIATION void add_spring_forces(const SpringNetwork<3, double>&, 
 SPRINGFIT_INSTANTIATION double volume_energy(const SpringNetwork<3, double>&, const Points<3, double>&);
 SPRINGFIT_INSTANTIATION void add_volume_forces(const SpringNetwork<3, double>&, const Points<3, double>&,
                                                Points<3, double>&);
-SPRINGFIT_INSTANTIATION CliqueMatrix<3, double> spring_matrix(const SpringNetwork<3, double>&, const FreeNodes&);
+SPRINGFIT_INSTANTIATION BlockMatrix<3, double> spring_matrix(const SpringNetwork<3, double>&, const FreeNodes&);
 SPRINGFIT_INSTANTIATION double stable_step_at(const SpringNetwork<3, double>&, const Points<3, double>&,
                                               const std::vector<int>&);
 SPRINGFIT_INSTANTIATION std::vector<int> clamped_nodes(const Scenario<3, double>&, Index);
@@ -38,8 +38,8 @@ SPRINGFIT_INSTANTIATION Points<3, double> external_forces(const Scenario<3, doub
 SPRINGFIT_INSTANTIATION void validate(const SpringNetwork<2, float>&);
 SPRINGFIT_INSTANTIATION void validate(const Scenario<2, float>&, Index);
 SPRINGFIT_INSTANTIATION void validate(const Motion<2, float>&);
-SPRINGFIT_INSTANTIATION void add_stiffness(const SpringNetwork<2, float>&, const Points<2, float>&, Curvature,
-                                           CliqueMatrix<2, float>&);
+SPRINGFIT_INSTANTIATION void add_stiffness(const SpringNetwork<2, float>&, const Points<2, float>&, HessianForm,
+                                           BlockMatrix<2, float>&);
 SPRINGFIT_INSTANTIATION void compute_accelerations(const SpringNetwork<2, float>&, const Points<2, float>&,
                                                    const Points<2, float>&, const Points<2, float>&, Points<2, float>&);
 SPRINGFIT_INSTANTIATION SpringNetwork<2, float> springs_along_edges(const Mesh<2, float, Tri3>&,
@@ -55,7 +55,7 @@ SPRINGFIT_INSTANTIATION void add_spring_forces(const SpringNetwork<2, float>&, c
 SPRINGFIT_INSTANTIATION float volume_energy(const SpringNetwork<2, float>&, const Points<2, float>&);
 SPRINGFIT_INSTANTIATION void add_volume_forces(const SpringNetwork<2, float>&, const Points<2, float>&,
                                                Points<2, float>&);
-SPRINGFIT_INSTANTIATION CliqueMatrix<2, float> spring_matrix(const SpringNetwork<2, float>&, const FreeNodes&);
+SPRINGFIT_INSTANTIATION BlockMatrix<2, float> spring_matrix(const SpringNetwork<2, float>&, const FreeNodes&);
 SPRINGFIT_INSTANTIATION float stable_step_at(const SpringNetwork<2, float>&, const Points<2, float>&,
                                              const std::vector<int>&);
 SPRINGFIT_INSTANTIATION std::vector<int> clamped_nodes(const Scenario<2, float>&, Index);
@@ -63,8 +63,8 @@ SPRINGFIT_INSTANTIATION Points<2, float> external_forces(const Scenario<2, float
 SPRINGFIT_INSTANTIATION void validate(const SpringNetwork<3, float>&);
 SPRINGFIT_INSTANTIATION void validate(const Scenario<3, float>&, Index);
 SPRINGFIT_INSTANTIATION void validate(const Motion<3, float>&);
-SPRINGFIT_INSTANTIATION void add_stiffness(const SpringNetwork<3, float>&, const Points<3, float>&, Curvature,
-                                           CliqueMatrix<3, float>&);
+SPRINGFIT_INSTANTIATION void add_stiffness(const SpringNetwork<3, float>&, const Points<3, float>&, HessianForm,
+                                           BlockMatrix<3, float>&);
 SPRINGFIT_INSTANTIATION void compute_accelerations(const SpringNetwork<3, float>&, const Points<3, float>&,
                                                    const Points<3, float>&, const Points<3, float>&, Points<3, float>&);
 SPRINGFIT_INSTANTIATION SpringNetwork<3, float> springs_along_edges(const Mesh<3, float, Tet4>&,
@@ -80,7 +80,7 @@ SPRINGFIT_INSTANTIATION void add_spring_forces(const SpringNetwork<3, float>&, c
 SPRINGFIT_INSTANTIATION float volume_energy(const SpringNetwork<3, float>&, const Points<3, float>&);
 SPRINGFIT_INSTANTIATION void add_volume_forces(const SpringNetwork<3, float>&, const Points<3, float>&,
                                                Points<3, float>&);
-SPRINGFIT_INSTANTIATION CliqueMatrix<3, float> spring_matrix(const SpringNetwork<3, float>&, const FreeNodes&);
+SPRINGFIT_INSTANTIATION BlockMatrix<3, float> spring_matrix(const SpringNetwork<3, float>&, const FreeNodes&);
 SPRINGFIT_INSTANTIATION float stable_step_at(const SpringNetwork<3, float>&, const Points<3, float>&,
                                              const std::vector<int>&);
 SPRINGFIT_INSTANTIATION std::vector<int> clamped_nodes(const Scenario<3, float>&, Index);

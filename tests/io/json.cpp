@@ -146,7 +146,7 @@ TEST_CASE_TEMPLATE("a surface reads back bit for bit, and a model without one ha
     CHECK(DenseMatrix<Scalar>(read.surface->from_nodes.weights) ==
           DenseMatrix<Scalar>(model.surface->from_nodes.weights));
     CHECK(model_text(read) == model_text(model));
-    CHECK(carry(*read.surface, read.network.rest_positions, read.network.rest_positions) ==
+    CHECK(deform(*read.surface, read.network.rest_positions, read.network.rest_positions) ==
           model.surface->rest_positions);
 
     const Json without = Json::parse(model_text(example<dim, Scalar>()));

@@ -39,8 +39,8 @@ TEST_CASE_TEMPLATE("active bounds: on the bound to the last bit, multipliers of 
     AccelerationOptions<Scalar> options;
     options.parameters.stiffness.lower = 250;
     options.parameters.stiffness.upper = 600;
-    const FitProblem problem = acceleration_problem<dim, Scalar>(network, {motion}, options);
-    const FitReport report = ipopt::exact(problem);
+    const AccelerationProblem problem = acceleration_problem<dim, Scalar>(network, {motion}, options);
+    const AccelerationReport report = ipopt::exact(problem);
     CHECK(report.status == Status::converged);
     CHECK(report.kkt_residual < 1e-9);
     CHECK(report.theta.minCoeff() == 250);
@@ -61,15 +61,15 @@ TEST_CASE("held unknowns stay, and nothing to solve is no failure") {
     const auto [network, motion] = make_case<2, double>(42);
     AccelerationOptions<double> options;
     options.parameters.stiffness.lower = options.parameters.stiffness.upper = 400;
-    const FitProblem held = acceleration_problem<2, double>(network, {motion}, options);
-    FitReport report = ipopt::exact(held);
+    const AccelerationProblem held = acceleration_problem<2, double>(network, {motion}, options);
+    AccelerationReport report = ipopt::exact(held);
     CHECK(report.status == Status::converged);
     CHECK((report.theta.array() == 400).all());
     CHECK(report.iterations == 0);
     CHECK(report.objective == held.objective.value(held.prior));
 
     options.parameters.damping.fit = true;
-    const FitProblem half = acceleration_problem<2, double>(network, {motion}, options);
+    const AccelerationProblem half = acceleration_problem<2, double>(network, {motion}, options);
     report = ipopt::exact(half);
     CHECK(report.status == Status::converged);
     CHECK((half.parameters.per_spring(ParameterKind::stiffness, report.theta).tail(network.n_springs() - 1).array() ==
@@ -80,7 +80,7 @@ TEST_CASE("held unknowns stay, and nothing to solve is no failure") {
     auto still = motion;
     still.clamped.resize(static_cast<std::size_t>(network.n_nodes()));
     std::iota(still.clamped.begin(), still.clamped.end(), 0);
-    const FitProblem nothing = acceleration_problem<2, double>(network, {still});
+    const AccelerationProblem nothing = acceleration_problem<2, double>(network, {still});
     report = ipopt::exact(nothing);
     CHECK(report.status == Status::converged);
     CHECK(report.theta.size() == 0);
@@ -91,18 +91,18 @@ TEST_CASE("a stop returns the best so far, an exception comes through, a wrong o
     AccelerationOptions<double> options;
     options.parameters.stiffness.upper = 300;
     options.parameters.stiffness.prior = Values<double>::Constant(network.n_springs(), 1.);
-    const FitProblem problem = acceleration_problem<3, double>(network, {motion}, options);
+    const AccelerationProblem problem = acceleration_problem<3, double>(network, {motion}, options);
     const double start = problem.objective.value(problem.prior);
-    const FitReport whole = ipopt::exact(problem);
+    const AccelerationReport whole = ipopt::exact(problem);
 
     for (int stop = 0; stop < 6; ++stop) {
         CAPTURE(stop);
         int calls = 0;
-        const FitReport report = ipopt::exact(problem, {.progress = [&](const Progress& p) {
-                                                  CHECK(p.stage == "exact fit");
-                                                  CHECK((p.fraction >= 0 && p.fraction <= 1));
-                                                  return calls++ < stop;
-                                              }});
+        const AccelerationReport report = ipopt::exact(problem, {.progress = [&](const Progress& p) {
+                                                           CHECK(p.stage == "exact fit");
+                                                           CHECK((p.fraction >= 0 && p.fraction <= 1));
+                                                           return calls++ < stop;
+                                                       }});
         CHECK(report.status == Status::interrupted);
         CHECK(calls == stop + 1);
         CHECK(report.objective <= start);
@@ -110,7 +110,7 @@ TEST_CASE("a stop returns the best so far, an exception comes through, a wrong o
         CHECK((report.theta.array() >= 0).all());
         CHECK((report.theta.array() <= 300).all());
     }
-    const FitReport limited = ipopt::exact(problem, {.max_iterations = 2});
+    const AccelerationReport limited = ipopt::exact(problem, {.max_iterations = 2});
     CHECK(limited.status == Status::iteration_limit);
     CHECK(limited.iterations == 2);
     CHECK(limited.objective <= start);
@@ -144,8 +144,8 @@ TEST_CASE("stiffness and damping orders of magnitude apart, in any unit") {
         network.damping.setZero();
         AccelerationOptions<double> options;
         options.parameters.damping.fit = true;
-        const FitProblem problem = acceleration_problem<3, double>(network, {motion}, options);
-        const FitReport report = ipopt::exact(problem);
+        const AccelerationProblem problem = acceleration_problem<3, double>(network, {motion}, options);
+        const AccelerationReport report = ipopt::exact(problem);
         CHECK(report.status == Status::converged);
         apply(problem, report, network);
         CHECK(test::relative_error(problem.parameters, ParameterKind::stiffness, network.stiffness, truth.stiffness) <
@@ -187,9 +187,9 @@ TEST_CASE_TEMPLATE("the fit without Ipopt finds the same springs in the motion o
     }
     auto network = springs_along_edges(mesh, {.density = 1000.});
     network.stiffness.setConstant(1000);
-    const FitProblem problem = acceleration_problem<dim, double>(network, motions);
-    const FitReport by_ipopt = ipopt::exact(problem);
-    const FitReport native = exact(problem);
+    const AccelerationProblem problem = acceleration_problem<dim, double>(network, motions);
+    const AccelerationReport by_ipopt = ipopt::exact(problem);
+    const AccelerationReport native = exact(problem);
     CHECK(native.status == Status::converged);
     CHECK(native.at_lower.size() > 5);
     CHECK(test::relative(native.objective, by_ipopt.objective, by_ipopt.objective) < 1e-8);

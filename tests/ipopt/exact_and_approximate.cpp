@@ -13,16 +13,16 @@ namespace {
 
 struct Solver {
     std::string name;
-    std::function<FitReport(const FitProblem&)> solve;
+    std::function<AccelerationReport(const AccelerationProblem&)> solve;
 };
 
 const std::vector<Solver>& solvers() {
     static const std::vector<Solver> all{
-        {"exact", [](const FitProblem& p) { return ipopt::exact(p); }},
-        {"one pass", [](const FitProblem& p) { return one_pass(p); }},
-        {"sweeps from one pass", [](const FitProblem& p) { return dominant_term(p); }},
+        {"exact", [](const AccelerationProblem& p) { return ipopt::exact(p); }},
+        {"one pass", [](const AccelerationProblem& p) { return one_pass(p); }},
+        {"sweeps from one pass", [](const AccelerationProblem& p) { return dominant_term(p); }},
         {"sweeps from the prior",
-         [](const FitProblem& p) {
+         [](const AccelerationProblem& p) {
              return dominant_term(p, {.max_sweeps = 3000, .tolerance = 1e-13, .start = SweepStart::given});
          }},
     };
@@ -99,10 +99,10 @@ TEST_CASE_TEMPLATE("a spring model is recovered by every solver", T, SPRINGFIT_T
             AccelerationOptions<Scalar> options;
             options.parameters.damping.fit = damped;
             options.parameters.preload.fit = rest_lengths;
-            const FitProblem problem = acceleration_problem<dim, Scalar>(network, {motion}, options);
+            const AccelerationProblem problem = acceleration_problem<dim, Scalar>(network, {motion}, options);
             for (const Solver& solver : solvers()) {
                 CAPTURE(solver.name);
-                const FitReport report = solver.solve(problem);
+                const AccelerationReport report = solver.solve(problem);
                 CHECK(usable(report.status));
                 auto fitted = network;
                 apply(problem, report, fitted);
@@ -149,7 +149,7 @@ TEST_CASE_TEMPLATE("a simulated spring model, let go far from equilibrium, is re
             network.damping.setZero();
             AccelerationOptions<double> options;
             options.parameters.damping.fit = damped;
-            const FitProblem problem = acceleration_problem<dim, double>(network, motions, options);
+            const AccelerationProblem problem = acceleration_problem<dim, double>(network, motions, options);
             for (const Solver& solver : solvers()) {
                 CAPTURE(solver.name);
                 auto fitted = network;
@@ -183,7 +183,7 @@ TEST_CASE("equilateral triangles at nu = 1/3: sqrt(3)/4 E h from each triangle a
         displacements.push_back(random.points<2, double>(mesh.n_nodes(), 1e-8));
     }
     const auto motion = test::linear_motion<2>(network, stiffness, displacements);
-    const FitProblem problem = acceleration_problem<2, double>(network, {motion});
+    const AccelerationProblem problem = acceleration_problem<2, double>(network, {motion});
     for (const Solver& solver : solvers()) {
         CAPTURE(solver.name);
         apply(problem, solver.solve(problem), network);
@@ -210,8 +210,8 @@ TEST_CASE("a square at nu = 1/3: 3/8 and 3/8 from affine motion, 17/56 and 23/56
                                  Answer{single_node_frames(cell.nodes, size), 17. / 56, 23. / 56}}) {
         CAPTURE(answer.edge);
         const auto motion = test::linear_motion<2>(network, stiffness, answer.frames);
-        const FitProblem problem = acceleration_problem<2, double>(network, {motion}, options);
-        for (const FitReport& report : {ipopt::exact(problem), dominant_term(problem)}) {
+        const AccelerationProblem problem = acceleration_problem<2, double>(network, {motion}, options);
+        for (const AccelerationReport& report : {ipopt::exact(problem), dominant_term(problem)}) {
             CHECK(report.status == Status::converged);
             CHECK(test::relative(report.theta(0), answer.edge * young, young) < 1e-5);
             CHECK(test::relative(report.theta(1), answer.diagonal * young, young) < 1e-5);
@@ -255,13 +255,13 @@ TEST_CASE_TEMPLATE("where springs cannot represent the material, fifty sweeps co
                                  Data{"vibration", test::vibration<dim>(network, stiffness, 100, 1e-3, random)}}) {
             CAPTURE(poisson);
             CAPTURE(data.name);
-            const FitProblem problem = acceleration_problem<dim, double>(network, {data.motion});
-            const FitReport exact = ipopt::exact(problem);
+            const AccelerationProblem problem = acceleration_problem<dim, double>(network, {data.motion});
+            const AccelerationReport exact = ipopt::exact(problem);
             CHECK(exact.status == Status::converged);
             CHECK(exact.objective > 0);
             CHECK(one_pass(problem).objective > exact.objective);
             for (const SweepStart start : {SweepStart::one_pass, SweepStart::given}) {
-                const FitReport sweeps = dominant_term(problem, {.max_sweeps = 50, .start = start});
+                const AccelerationReport sweeps = dominant_term(problem, {.max_sweeps = 50, .start = start});
                 double before = sweeps.objective_start;
                 for (double value : sweeps.history) {
                     CHECK(value <= before);

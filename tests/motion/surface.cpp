@@ -35,7 +35,7 @@ struct OneCell {
 
 /// Length of a closed outline's normal, or area of a closed surface's: sum of the cells' normals, and of their sizes.
 template <int Dim, class Scalar>
-std::pair<Vector<Dim, Scalar>, Scalar> normals(const CarriedSurface<Dim, Scalar>& surface) {
+std::pair<Vector<Dim, Scalar>, Scalar> normals(const EmbeddedSurface<Dim, Scalar>& surface) {
     Vector<Dim, Scalar> sum = Vector<Dim, Scalar>::Zero();
     Scalar size = 0;
     Scalar outwards = 0;
@@ -67,14 +67,14 @@ TEST_CASE_TEMPLATE("a carried surface follows translations, rotations and affine
     const auto mesh = box<dim, Scalar>();
     const auto surface = boundary_surface(mesh, network.at(mesh.nodes));
     CHECK_NOTHROW(validate(surface, dim + 1));
-    CHECK(carry(surface, network.nodes, network.nodes) == surface.rest_positions);
+    CHECK(deform(surface, network.nodes, network.nodes) == surface.rest_positions);
 
     const Eigen::Matrix<Scalar, dim, dim> gradient = Eigen::Matrix<Scalar, dim, dim>::Random();
     const Vector<dim, Scalar> shift = Vector<dim, Scalar>::Random();
     Motion<dim, Scalar> motion;
     motion.rest_positions = network.nodes;
     motion.positions = {network.nodes, (gradient * network.nodes).colwise() + shift};
-    const auto frames = carry(surface, motion);
+    const auto frames = deform(surface, motion);
     REQUIRE(frames.size() == 2);
     CHECK(frames[0] == surface.rest_positions);
     const Points<dim, Scalar> expected = (gradient * surface.rest_positions).colwise() + shift;
@@ -86,14 +86,14 @@ TEST_CASE_TEMPLATE("a point outside the network rests where it belongs and moves
     constexpr int dim = T::dimension;
     using Scalar = typename T::Scalar;
     const OneCell<dim, Scalar> network;
-    CarriedSurface<dim, Scalar> surface;
+    EmbeddedSurface<dim, Scalar> surface;
     surface.rest_positions = Points<dim, Scalar>::Constant(dim, 1, Scalar(-0.25));
     surface.from_nodes.weights.resize(dim + 1, 1);
     surface.from_nodes.weights.insert(0, 0) = 1; // the origin is nearest
-    CHECK(carry(surface, network.nodes, network.nodes) == surface.rest_positions);
+    CHECK(deform(surface, network.nodes, network.nodes) == surface.rest_positions);
     Points<dim, Scalar> moved = network.nodes;
     moved.colwise() += Vector<dim, Scalar>::Constant(Scalar(0.5));
-    CHECK(carry(surface, network.nodes, moved) == Points<dim, Scalar>::Constant(dim, 1, Scalar(0.25)));
+    CHECK(deform(surface, network.nodes, moved) == Points<dim, Scalar>::Constant(dim, 1, Scalar(0.25)));
 }
 
 TEST_CASE_TEMPLATE("the boundary is closed, faces outwards and has the mesh's own nodes", T, SPRINGFIT_TEST_SPACES) {
@@ -139,7 +139,7 @@ TEST_CASE("a surface that does not fit its network is refused by name") {
     CHECK_THROWS_AS(validate(broken, 4), InvalidArgument);
     CHECK_THROWS_AS((void)boundary_surface(mesh, surface.from_nodes), InvalidArgument);
     const Points<3, double> five = Points<3, double>::Zero(3, 5);
-    CHECK_THROWS_AS((void)carry(surface, network.nodes, five), InvalidArgument);
-    CHECK_THROWS_AS((void)carry(surface, five, five), InvalidArgument);
-    CHECK_THROWS_AS((void)carry<3>(surface.from_nodes, five, network.nodes, network.nodes), InvalidArgument);
+    CHECK_THROWS_AS((void)deform(surface, network.nodes, five), InvalidArgument);
+    CHECK_THROWS_AS((void)deform(surface, five, five), InvalidArgument);
+    CHECK_THROWS_AS((void)deform<3>(surface.from_nodes, five, network.nodes, network.nodes), InvalidArgument);
 }

@@ -26,7 +26,7 @@ TEST_CASE_TEMPLATE("forces and Hessian are the derivatives of the energy", T, te
     const auto forces = elastic_forces<dim, double>(network, x);
     const FreeNodes free(network.n_nodes(), {0, 3});
     auto matrix = triangle_matrix(network, free);
-    add_stiffness<dim, double>(network, x, Curvature::exact, matrix);
+    add_stiffness<dim, double>(network, x, HessianForm::exact, matrix);
     const double h = 1e-6;
     for (unsigned seed = 3; seed < 6; ++seed) {
         Points<dim, double> direction = test::moved<dim, double>(Points<dim, double>::Zero(dim, x.cols()), 1, seed);
@@ -46,7 +46,7 @@ TEST_CASE_TEMPLATE("forces and Hessian are the derivatives of the energy", T, te
     }
     // Without the negative geometric parts no direction has less curvature.
     auto semidefinite = triangle_matrix(network, free);
-    add_stiffness<dim, double>(network, x, Curvature::positive_semidefinite, semidefinite);
+    add_stiffness<dim, double>(network, x, HessianForm::positive_semidefinite, semidefinite);
     const DenseMatrix<double> more = DenseMatrix<double>(semidefinite.matrix()) - DenseMatrix<double>(matrix.matrix());
     const Values<double> eigenvalues = test::eigenvalues(more);
     CHECK(eigenvalues.maxCoeff() > 0);

@@ -102,7 +102,7 @@ TEST_CASE_TEMPLATE("the Hessian is the derivative of the forces", T, test::Space
     const auto& v = given.velocities;
     const FreeNodes free(network.n_nodes(), {1, 4});
     auto stiffness = spring_matrix(network, free);
-    add_stiffness<dim, double>(network, x, Curvature::exact, stiffness);
+    add_stiffness<dim, double>(network, x, HessianForm::exact, stiffness);
     auto damping = spring_matrix(network, free);
     add_damping<dim, double>(network, x, 1., damping);
     const Index n = dim * free.n_free();
@@ -136,17 +136,18 @@ TEST_CASE_TEMPLATE("the semidefinite Hessian drops negative curvature alone", T,
     constexpr int dim = T::dimension;
     auto [network, x, v] = example<dim, double>();
     const FreeNodes free(network.n_nodes(), {});
-    const auto assemble = [&, &net = network](const Points<dim, double>& at, Curvature curvature) {
+    const auto assemble = [&, &net = network](const Points<dim, double>& at, HessianForm curvature) {
         auto matrix = spring_matrix(net, free);
         add_stiffness<dim, double>(net, at, curvature, matrix);
         return full(matrix);
     };
     const auto smallest = [](const DenseMatrix<double>& matrix) { return test::eigenvalues(matrix)(0); };
     const Points<dim, double> squeezed = 0.5 * x;
-    CHECK(smallest(assemble(squeezed, Curvature::exact)) < -0.1);
-    CHECK(smallest(assemble(squeezed, Curvature::positive_semidefinite)) > -1e-12);
+    CHECK(smallest(assemble(squeezed, HessianForm::exact)) < -0.1);
+    CHECK(smallest(assemble(squeezed, HessianForm::positive_semidefinite)) > -1e-12);
     const Points<dim, double> stretched = 2 * network.rest_positions;
-    CHECK((assemble(stretched, Curvature::exact) - assemble(stretched, Curvature::positive_semidefinite)).norm() == 0);
+    CHECK((assemble(stretched, HessianForm::exact) - assemble(stretched, HessianForm::positive_semidefinite)).norm() ==
+          0);
 }
 
 TEST_CASE_TEMPLATE("spring forces conserve momentum, turn with the body, and damping only takes energy", T,

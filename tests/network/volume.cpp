@@ -80,7 +80,7 @@ Points<Dim, Scalar> volume_forces(const SpringNetwork<Dim, Scalar>& network, con
 
 template <int Dim>
 DenseMatrix<double> hessian(const SpringNetwork<Dim, double>& network, const FreeNodes& free,
-                            const Points<Dim, double>& x, Curvature curvature) {
+                            const Points<Dim, double>& x, HessianForm curvature) {
     auto matrix = spring_matrix(network, free);
     add_stiffness<Dim, double>(network, x, curvature, matrix);
     const DenseMatrix<double> lower = matrix.matrix();
@@ -167,7 +167,7 @@ TEST_CASE_TEMPLATE("with cells, forces are minus the gradient of the energy and 
                              (2 * h);
     }
     CHECK(test::relative_difference(slopes, free.gather<dim, double>(forces)) < 1e-8);
-    CHECK(test::relative_difference(hessian<dim>(network, free, x, Curvature::exact), by_position) < 1e-8);
+    CHECK(test::relative_difference(hessian<dim>(network, free, x, HessianForm::exact), by_position) < 1e-8);
 }
 
 TEST_CASE_TEMPLATE("the semidefinite Hessian of cells keeps what is positive at every position", T,
@@ -177,15 +177,15 @@ TEST_CASE_TEMPLATE("the semidefinite Hessian of cells keeps what is positive at 
     auto& network = example.network;
     const FreeNodes free(network.n_nodes(), {});
     const auto smallest = [](const DenseMatrix<double>& matrix) { return test::eigenvalues(matrix)(0); };
-    CHECK(smallest(hessian<dim>(network, free, 0.5 * example.positions, Curvature::exact)) < -0.1);
-    CHECK(smallest(hessian<dim>(network, free, 0.5 * example.positions, Curvature::positive_semidefinite)) > -1e-12);
+    CHECK(smallest(hessian<dim>(network, free, 0.5 * example.positions, HessianForm::exact)) < -0.1);
+    CHECK(smallest(hessian<dim>(network, free, 0.5 * example.positions, HessianForm::positive_semidefinite)) > -1e-12);
     // At rest there is no pressure: only cells of negative stiffness are left out.
     network.rest_volume = springs_along_edges(jittered_mesh<dim, double>(), {.volume = true}).rest_volume;
     auto positive = network;
     positive.volume_stiffness = network.volume_stiffness.cwiseMax(0.);
     const auto& rest = network.rest_positions;
-    CHECK(test::relative_difference(hessian<dim>(network, free, rest, Curvature::positive_semidefinite),
-                                    hessian<dim>(positive, free, rest, Curvature::exact)) < 1e-14);
+    CHECK(test::relative_difference(hessian<dim>(network, free, rest, HessianForm::positive_semidefinite),
+                                    hessian<dim>(positive, free, rest, HessianForm::exact)) < 1e-14);
 }
 
 TEST_CASE_TEMPLATE("cells conserve momentum, turn with the body and do nothing in a rigid motion", T,

@@ -6,7 +6,7 @@
 #include <springfit/score/motion_error.hpp>
 #include <springfit/simulate/static_solver.hpp>
 
-#include "../step/example.hpp"
+#include "../body/example.hpp"
 
 using namespace springfit;
 

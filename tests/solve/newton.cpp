@@ -27,7 +27,7 @@ TEST_CASE_TEMPLATE("a clique matrix adds what dense blocks add", T, SPRINGFIT_TE
         cliques.push_back(clique);
     }
     const FreeNodes free(10, {2, 5});
-    CliqueMatrix<dim, Scalar> sparse(free, cliques);
+    BlockMatrix<dim, Scalar> sparse(free, cliques);
     DenseMatrix<Scalar> dense = DenseMatrix<Scalar>::Zero(10 * dim, 10 * dim);
     for (std::size_t c = 0; c < cliques.size(); ++c) {
         DenseMatrix<Scalar> block = DenseMatrix<Scalar>::Random(4 * dim, 4 * dim);

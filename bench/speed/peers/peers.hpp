@@ -38,7 +38,7 @@ struct ScaledProblem {
     springfit::Values<double> linear, lower, upper;
     double tolerance; ///< of the entries of x - clip(x - gradient), where `kkt_residual` is the one asked for
 
-    ScaledProblem(const springfit::FitProblem& problem, double kkt_residual);
+    ScaledProblem(const springfit::AccelerationProblem& problem, double kkt_residual);
 
     /// The unknowns that belong to x, within their bounds.
     [[nodiscard]] springfit::Values<double> theta(const springfit::Values<double>& x) const;

@@ -5,7 +5,7 @@ namespace bench::peers {
 
 using Values = springfit::Values<double>;
 
-ScaledProblem::ScaledProblem(const springfit::FitProblem& problem, double kkt_residual)
+ScaledProblem::ScaledProblem(const springfit::AccelerationProblem& problem, double kkt_residual)
     : m_prior(problem.prior), m_lowest(problem.lower), m_highest(problem.upper) {
     const Values curvature = problem.objective.curvature();
     m_scale = (curvature.array() > 0).select(curvature.cwiseSqrt(), Values::Ones(curvature.size()));

@@ -33,8 +33,8 @@ template <int Dim>
 struct Candidate {
     std::string name;
     SpringNetwork<Dim, double> network;
-    std::optional<FitReport> acceleration{};      ///< of an acceleration fit
-    std::optional<TrajectoryReport> trajectory{}; ///< of matching of motion
+    std::optional<AccelerationReport> acceleration{}; ///< of an acceleration fit
+    std::optional<TrajectoryReport> trajectory{};     ///< of matching of motion
     Values<double>
         data_share{}; ///< of each spring, of matching of motion: above 1/2 the data set its stiffness, else the prior
     Index n_clamped = 0;

@@ -31,7 +31,7 @@ enum class DampingRule {
 };
 
 /// A solver of the acceleration fit to its global minimum: `exact`, or `ipopt::exact`.
-using ExactSolver = std::function<FitReport(const FitProblem&, const ExactOptions&)>;
+using ExactSolver = std::function<AccelerationReport(const AccelerationProblem&, const ExactOptions&)>;
 
 /// What `calibrate` does and how long it may take. The defaults are those of the program.
 struct CalibrateOptions {

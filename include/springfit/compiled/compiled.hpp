@@ -12,6 +12,7 @@
 
 #define SPRINGFIT_INSTANTIATION extern template
 
+#include <springfit/compiled/body.ipp>
 #include <springfit/compiled/calibrate.ipp>
 #include <springfit/compiled/cases.ipp>
 #include <springfit/compiled/closed_form.ipp>
@@ -24,8 +25,7 @@
 #include <springfit/compiled/fit_trajectory_3d.ipp>
 #include <springfit/compiled/network.ipp>
 #include <springfit/compiled/score.ipp>
+#include <springfit/compiled/simulate.ipp>
+#include <springfit/compiled/simulate_float.ipp>
 #include <springfit/compiled/solve.ipp>
 #include <springfit/compiled/solve_float.ipp>
-#include <springfit/compiled/step_bodies.ipp>
-#include <springfit/compiled/step_float.ipp>
-#include <springfit/compiled/step_steppers.ipp>

@@ -5,8 +5,8 @@ namespace springfit {
 
 SPRINGFIT_INSTANTIATION class AccelerationObjective<2, double>;
 SPRINGFIT_INSTANTIATION class AccelerationObjective<3, double>;
-SPRINGFIT_INSTANTIATION FitReport one_pass(const FitProblem&, const OnePassOptions&);
-SPRINGFIT_INSTANTIATION FitReport dominant_term(const FitProblem&, const DominantTermOptions&);
-SPRINGFIT_INSTANTIATION FitReport exact(const FitProblem&, const ExactOptions&);
+SPRINGFIT_INSTANTIATION AccelerationReport one_pass(const AccelerationProblem&, const OnePassOptions&);
+SPRINGFIT_INSTANTIATION AccelerationReport dominant_term(const AccelerationProblem&, const DominantTermOptions&);
+SPRINGFIT_INSTANTIATION AccelerationReport exact(const AccelerationProblem&, const ExactOptions&);
 
 } // namespace springfit

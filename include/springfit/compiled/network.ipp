@@ -6,16 +6,16 @@ namespace springfit {
 SPRINGFIT_INSTANTIATION void validate(const SpringNetwork<2, double>&);
 SPRINGFIT_INSTANTIATION void validate(const Scenario<2, double>&, Index);
 SPRINGFIT_INSTANTIATION void validate(const Motion<2, double>&);
-SPRINGFIT_INSTANTIATION void add_stiffness(const SpringNetwork<2, double>&, const Points<2, double>&, Curvature,
-                                           CliqueMatrix<2, double>&);
+SPRINGFIT_INSTANTIATION void add_stiffness(const SpringNetwork<2, double>&, const Points<2, double>&, HessianForm,
+                                           BlockMatrix<2, double>&);
 SPRINGFIT_INSTANTIATION void compute_accelerations(const SpringNetwork<2, double>&, const Points<2, double>&,
                                                    const Points<2, double>&, const Points<2, double>&,
                                                    Points<2, double>&);
 SPRINGFIT_INSTANTIATION void validate(const SpringNetwork<3, double>&);
 SPRINGFIT_INSTANTIATION void validate(const Scenario<3, double>&, Index);
 SPRINGFIT_INSTANTIATION void validate(const Motion<3, double>&);
-SPRINGFIT_INSTANTIATION void add_stiffness(const SpringNetwork<3, double>&, const Points<3, double>&, Curvature,
-                                           CliqueMatrix<3, double>&);
+SPRINGFIT_INSTANTIATION void add_stiffness(const SpringNetwork<3, double>&, const Points<3, double>&, HessianForm,
+                                           BlockMatrix<3, double>&);
 SPRINGFIT_INSTANTIATION void compute_accelerations(const SpringNetwork<3, double>&, const Points<3, double>&,
                                                    const Points<3, double>&, const Points<3, double>&,
                                                    Points<3, double>&);

@@ -5,28 +5,28 @@ namespace springfit {
 
 SPRINGFIT_INSTANTIATION class SymmetricMatrix<float>;
 SPRINGFIT_INSTANTIATION class SymmetricSolver<float>;
-SPRINGFIT_INSTANTIATION class CliqueMatrix<2, float>;
-SPRINGFIT_INSTANTIATION class CliqueMatrix<3, float>;
+SPRINGFIT_INSTANTIATION class BlockMatrix<2, float>;
+SPRINGFIT_INSTANTIATION class BlockMatrix<3, float>;
 SPRINGFIT_INSTANTIATION class detail::NodeCholesky<2, float>;
 SPRINGFIT_INSTANTIATION class detail::NodeCholesky<3, float>;
-SPRINGFIT_INSTANTIATION class TurnedFactor<2, float>;
-SPRINGFIT_INSTANTIATION class TurnedFactor<3, float>;
-SPRINGFIT_INSTANTIATION class TurnedSolver<2, float>;
-SPRINGFIT_INSTANTIATION class TurnedSolver<3, float>;
+SPRINGFIT_INSTANTIATION class CorotatedPreconditioner<2, float>;
+SPRINGFIT_INSTANTIATION class CorotatedPreconditioner<3, float>;
+SPRINGFIT_INSTANTIATION class CorotatedSolver<2, float>;
+SPRINGFIT_INSTANTIATION class CorotatedSolver<3, float>;
 SPRINGFIT_INSTANTIATION class fem::Stiffness<2, float>;
 SPRINGFIT_INSTANTIATION class fem::Stiffness<3, float>;
 SPRINGFIT_INSTANTIATION void validate(const SpringNetwork<2, float>&);
 SPRINGFIT_INSTANTIATION void validate(const Scenario<2, float>&, Index);
 SPRINGFIT_INSTANTIATION void validate(const Motion<2, float>&);
-SPRINGFIT_INSTANTIATION void add_stiffness(const SpringNetwork<2, float>&, const Points<2, float>&, Curvature,
-                                           CliqueMatrix<2, float>&);
+SPRINGFIT_INSTANTIATION void add_stiffness(const SpringNetwork<2, float>&, const Points<2, float>&, HessianForm,
+                                           BlockMatrix<2, float>&);
 SPRINGFIT_INSTANTIATION void compute_accelerations(const SpringNetwork<2, float>&, const Points<2, float>&,
                                                    const Points<2, float>&, const Points<2, float>&, Points<2, float>&);
 SPRINGFIT_INSTANTIATION void validate(const SpringNetwork<3, float>&);
 SPRINGFIT_INSTANTIATION void validate(const Scenario<3, float>&, Index);
 SPRINGFIT_INSTANTIATION void validate(const Motion<3, float>&);
-SPRINGFIT_INSTANTIATION void add_stiffness(const SpringNetwork<3, float>&, const Points<3, float>&, Curvature,
-                                           CliqueMatrix<3, float>&);
+SPRINGFIT_INSTANTIATION void add_stiffness(const SpringNetwork<3, float>&, const Points<3, float>&, HessianForm,
+                                           BlockMatrix<3, float>&);
 SPRINGFIT_INSTANTIATION void compute_accelerations(const SpringNetwork<3, float>&, const Points<3, float>&,
                                                    const Points<3, float>&, const Points<3, float>&, Points<3, float>&);
 SPRINGFIT_INSTANTIATION SpringNetwork<2, float> springs_along_edges(const Mesh<2, float, Tri3>&,

@@ -41,8 +41,8 @@ struct StaticsReport {
 ///
 /// The pattern of the stiffness and its factor at rest are kept for as long as the same nodes are clamped, so sort many
 /// load cases by their clamps. Linear systems are solved by conjugate gradients with that factor, turned with the body
-/// (`TurnedSolver`); those of membranes, whose stiffness may be singular, with the diagonal: a flat one answers loads
-/// in its plane. A model of the concept StaticSolver.
+/// (`CorotatedSolver`); those of membranes, whose stiffness may be singular, with the diagonal: a flat one answers
+/// loads in its plane. A model of the concept StaticSolver.
 template <int Dim, std::floating_point ScalarType>
 class Statics {
 public:
@@ -84,7 +84,7 @@ private:
     std::vector<int> m_clamped;
     FreeNodes m_free;
     std::shared_ptr<detail::PotentialEnergy<Dim, Scalar>> m_potential; ///< of m_body over m_free
-    TurnedSolver<Dim, Scalar> m_solver;
+    CorotatedSolver<Dim, Scalar> m_solver;
 };
 
 template <Elastic B>

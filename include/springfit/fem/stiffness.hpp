@@ -51,7 +51,7 @@ public:
 private:
     void make_patches(const FreeNodes& free, const Cliques& cells);
 
-    CliqueMatrix<Dim, Scalar> m_local;
+    BlockMatrix<Dim, Scalar> m_local;
     SparseMatrix<Scalar> m_columns; ///< [Dim * n_free x n_patches]
     Values<Scalar> m_weights;       ///< [n_patches]
     std::vector<int> m_places;      ///< per cell, patch of the cell and node of the cell: place among the values

@@ -40,7 +40,7 @@ template <int Dim>
     return json;
 }
 
-[[nodiscard]] inline Json describe(const FitReport& fit) {
+[[nodiscard]] inline Json describe(const AccelerationReport& fit) {
     return {{"status", to_string(fit.status)},
             {"objective_start", fit.objective_start},
             {"objective", fit.objective},

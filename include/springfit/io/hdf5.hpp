@@ -47,13 +47,13 @@ private:
     Close m_close = nullptr;
 };
 
-/// Room on the disk for a file that is being written.
+/// ReservedSpace on the disk for a file that is being written.
 ///
 /// HDF5 1.10 cannot stand a failed write: the program crashes when it ends. So room is made, or found missing, before
 /// HDF5 writes; what it keeps in memory always has its place already.
-class Room {
+class ReservedSpace {
 public:
-    Room(const std::filesystem::path& path, std::string shown);
+    ReservedSpace(const std::filesystem::path& path, std::string shown);
     /// Makes room for `bytes` more than HDF5 has given out so far in the file of `object`. Throws FileError on a full
     /// disk.
     void make(hid_t object, hsize_t bytes);
@@ -106,15 +106,15 @@ public:
 
 private:
     friend class Series;
-    File(Handle file, std::shared_ptr<Room> room, std::string name)
-        : m_file(std::move(file)), m_room(std::move(room)), m_name(std::move(name)) {}
-    void make_room(hsize_t bytes) const { m_room->make(m_file.get(), bytes); }
+    File(Handle file, std::shared_ptr<ReservedSpace> room, std::string name)
+        : m_file(std::move(file)), m_reserved(std::move(room)), m_name(std::move(name)) {}
+    void make_room(hsize_t bytes) const { m_reserved->make(m_file.get(), bytes); }
     [[nodiscard]] Handle open_dataset(const std::string& dataset) const;
     [[nodiscard]] Handle create_dataset(const std::string& dataset, hid_t type, hid_t space, hid_t properties,
                                         hid_t access) const;
 
     Handle m_file;
-    std::shared_ptr<Room> m_room; ///< of a created file
+    std::shared_ptr<ReservedSpace> m_reserved; ///< of a created file
     std::string m_name;
 };
 
@@ -131,7 +131,7 @@ public:
 
 private:
     std::string m_file;
-    std::shared_ptr<Room> m_room;
+    std::shared_ptr<ReservedSpace> m_reserved;
     hsize_t m_row_bytes = sizeof(double);
     std::string m_name;
     Shape m_row;

@@ -21,7 +21,7 @@ struct Model {
     Values<Scalar> data_share{};
     std::vector<int> fixed;      ///< nodes that were clamped, ascending, each once
     Scalar stable_time_step = 0; ///< the largest step that explicit integration is sure to stand, s, > 0
-    std::optional<CarriedSurface<Dim, Scalar>> surface{}; ///< finer than the network, for display
+    std::optional<EmbeddedSurface<Dim, Scalar>> surface{}; ///< finer than the network, for display
     Json provenance = Json::object(); ///< how the model came about: program version, method, material, ...
 };
 

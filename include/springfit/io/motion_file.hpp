@@ -27,7 +27,7 @@ template <int Dim, std::floating_point Scalar, CellType Cell>
 
 /// The triangles of a carried surface; in the plane its segments, in the place of springs.
 template <int Dim, std::floating_point Scalar>
-[[nodiscard]] MotionTopology motion_topology(const CarriedSurface<Dim, Scalar>& surface) {
+[[nodiscard]] MotionTopology motion_topology(const EmbeddedSurface<Dim, Scalar>& surface) {
     if constexpr (Dim == 2) {
         return {.kind = {}, .cells = {}, .springs = surface.cells};
     } else {

@@ -30,7 +30,7 @@ struct ExactOptions {
 /// with the status `interrupted`; an exception from the callback ends the solve and is thrown on. Throws
 /// InvalidArgument for an option that Ipopt refuses and for an `initial` of the wrong size or not finite. Cost per
 /// iteration: one sparse factorisation of the Hessian.
-[[nodiscard]] FitReport exact(const FitProblem& problem, const ExactOptions& options = {});
+[[nodiscard]] AccelerationReport exact(const AccelerationProblem& problem, const ExactOptions& options = {});
 
 } // namespace springfit::ipopt
 

@@ -20,7 +20,7 @@ concept StaticSolver = requires(S solver, const Scenario<S::dimension, typename 
                                 typename S::Scalar time, Points<S::dimension, typename S::Scalar>& nodes) {
     { solver.rest_positions() } -> std::convertible_to<Points<S::dimension, typename S::Scalar>>;
     { solver.masses() } -> std::convertible_to<Values<typename S::Scalar>>;
-    { solver.balance(scenario, time, nodes) } -> std::same_as<Status>;
+    { solver.solve_equilibrium(scenario, time, nodes) } -> std::same_as<Status>;
     { solver.linear_response(scenario, time, nodes) } -> std::same_as<Status>;
 };
 
@@ -114,7 +114,7 @@ record_statics(const R& reference, const std::vector<Scenario<R::dimension, type
         motion.clamped = clamped_nodes(scenarios[c], motion.n_nodes());
         Points<dim, Scalar> positions;
         Points<dim, Scalar> external;
-        status = solver.balance(scenarios[c], options.time, positions);
+        status = solver.solve_equilibrium(scenarios[c], options.time, positions);
         if (status == Status::converged) {
             detail::check_nodes<dim, Scalar>(positions, "positions", motion.n_nodes());
             detail::check_masses<Scalar>(solver.masses(), motion.n_nodes());

@@ -13,9 +13,9 @@ namespace springfit {
 /// outside the network. Translations are followed exactly, rotations and affine motions as far as the weights reproduce
 /// the point at rest. Throws InvalidArgument for sizes that do not fit. O(weights).
 template <int Dim, std::floating_point Scalar>
-[[nodiscard]] Points<Dim, Scalar> carry(const Interpolation<Scalar>& from_nodes, const Points<Dim, Scalar>& rest_points,
-                                        const Points<Dim, Scalar>& rest_positions,
-                                        const Points<Dim, Scalar>& positions) {
+[[nodiscard]] Points<Dim, Scalar>
+deform(const Interpolation<Scalar>& from_nodes, const Points<Dim, Scalar>& rest_points,
+       const Points<Dim, Scalar>& rest_positions, const Points<Dim, Scalar>& positions) {
     require(rest_points.cols() == from_nodes.n_targets(), "rest_points",
             text(from_nodes.n_targets(), " points, one per target"), rest_points.cols());
     require(positions.cols() == rest_positions.cols(), "positions", text(rest_positions.cols(), " nodes, as at rest"),
@@ -26,7 +26,7 @@ template <int Dim, std::floating_point Scalar>
 /// A surface for display that the nodes of a network carry.
 template <int Dim, std::floating_point ScalarType>
     requires SpatialDimension<Dim>
-struct CarriedSurface {
+struct EmbeddedSurface {
     static constexpr int dimension = Dim;
     using Scalar = ScalarType;
 
@@ -42,7 +42,7 @@ struct CarriedSurface {
 /// Throws InvalidArgument unless the surface has finite points, each with weights of nodes in [0, `n_nodes`) that sum
 /// to 1, and its cells name points that it has.
 template <int Dim, std::floating_point Scalar>
-void validate(const CarriedSurface<Dim, Scalar>& surface, Index n_nodes) {
+void validate(const EmbeddedSurface<Dim, Scalar>& surface, Index n_nodes) {
     require(surface.n_points() > 0 && surface.rest_positions.allFinite(), "surface", "points at finite positions",
             text(surface.n_points(), " points"));
     require(surface.from_nodes.n_sources() == n_nodes && surface.from_nodes.n_targets() == surface.n_points(),
@@ -57,19 +57,19 @@ void validate(const CarriedSurface<Dim, Scalar>& surface, Index n_nodes) {
 
 /// Where the points of the surface are when the network's nodes are at `positions` `[Dim x n_points]`, m: see above.
 template <int Dim, std::floating_point Scalar>
-[[nodiscard]] Points<Dim, Scalar> carry(const CarriedSurface<Dim, Scalar>& surface,
-                                        const Points<Dim, Scalar>& rest_positions,
-                                        const Points<Dim, Scalar>& positions) {
-    return carry<Dim, Scalar>(surface.from_nodes, surface.rest_positions, rest_positions, positions);
+[[nodiscard]] Points<Dim, Scalar> deform(const EmbeddedSurface<Dim, Scalar>& surface,
+                                         const Points<Dim, Scalar>& rest_positions,
+                                         const Points<Dim, Scalar>& positions) {
+    return deform<Dim, Scalar>(surface.from_nodes, surface.rest_positions, rest_positions, positions);
 }
 
 /// Where the points of the surface are in every frame of a network's motion: n_frames of `[Dim x n_points]`, m.
 template <int Dim, std::floating_point Scalar>
-[[nodiscard]] std::vector<Points<Dim, Scalar>> carry(const CarriedSurface<Dim, Scalar>& surface,
-                                                     const Motion<Dim, Scalar>& motion) {
+[[nodiscard]] std::vector<Points<Dim, Scalar>> deform(const EmbeddedSurface<Dim, Scalar>& surface,
+                                                      const Motion<Dim, Scalar>& motion) {
     std::vector<Points<Dim, Scalar>> frames;
     for (const auto& positions : motion.positions) {
-        frames.push_back(carry(surface, motion.rest_positions, positions));
+        frames.push_back(deform(surface, motion.rest_positions, positions));
     }
     return frames;
 }
@@ -80,14 +80,14 @@ template <int Dim, std::floating_point Scalar>
 /// Throws InvalidArgument where `at_nodes` has other targets than the mesh has nodes. O(cells log cells).
 template <int Dim, std::floating_point Scalar, CellType Cell>
     requires(Cell::dimension == Dim)
-[[nodiscard]] CarriedSurface<Dim, Scalar> boundary_surface(const Mesh<Dim, Scalar, Cell>& mesh,
-                                                           const Interpolation<Scalar>& at_nodes) {
+[[nodiscard]] EmbeddedSurface<Dim, Scalar> boundary_surface(const Mesh<Dim, Scalar, Cell>& mesh,
+                                                            const Interpolation<Scalar>& at_nodes) {
     require(at_nodes.n_targets() == mesh.n_nodes(), "at_nodes", text(mesh.n_nodes(), " targets, the mesh's nodes"),
             at_nodes.n_targets());
     const auto facets = boundary_facets(mesh);
     const std::vector<int> nodes = boundary_nodes(mesh);
     std::vector<int> number(static_cast<std::size_t>(mesh.n_nodes()), -1);
-    CarriedSurface<Dim, Scalar> surface;
+    EmbeddedSurface<Dim, Scalar> surface;
     surface.rest_positions = mesh.nodes(Eigen::all, nodes);
     surface.from_nodes.weights.resize(at_nodes.n_sources(), static_cast<Index>(nodes.size()));
     for (std::size_t p = 0; p < nodes.size(); ++p) {

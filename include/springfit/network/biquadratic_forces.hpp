@@ -106,16 +106,16 @@ void compute_accelerations(const BiquadraticNetwork<Dim, Scalar>& network, const
 
 /// The matrix of a biquadratic network over its free nodes, filled by `add_stiffness`.
 template <int Dim, std::floating_point Scalar>
-[[nodiscard]] CliqueMatrix<Dim, Scalar> triangle_matrix(const BiquadraticNetwork<Dim, Scalar>& network,
-                                                        const FreeNodes& free) {
-    return CliqueMatrix<Dim, Scalar>(free, cliques_of(network.triangles));
+[[nodiscard]] BlockMatrix<Dim, Scalar> triangle_matrix(const BiquadraticNetwork<Dim, Scalar>& network,
+                                                       const FreeNodes& free) {
+    return BlockMatrix<Dim, Scalar>(free, cliques_of(network.triangles));
 }
 
 /// Adds the Hessian of the elastic energy at `positions`, N/m, to a `triangle_matrix`: 4 sum S_ij r_i r_j' and, for
-/// each edge, 2 s_i I, which `Curvature::positive_semidefinite` leaves out where s_i < 0. O(triangles).
+/// each edge, 2 s_i I, which `HessianForm::positive_semidefinite` leaves out where s_i < 0. O(triangles).
 template <int Dim, std::floating_point Scalar>
 void add_stiffness(const BiquadraticNetwork<Dim, Scalar>& network, const Points<Dim, Scalar>& positions,
-                   Curvature curvature, CliqueMatrix<Dim, Scalar>& matrix) {
+                   HessianForm curvature, BlockMatrix<Dim, Scalar>& matrix) {
     using Block = Eigen::Matrix<Scalar, 3 * Dim, 3 * Dim>;
     for (Index t = 0; t < network.n_triangles(); ++t) {
         const detail::BiquadraticTriangle<Dim, Scalar> triangle(network, t, positions);
@@ -127,7 +127,7 @@ void add_stiffness(const BiquadraticNetwork<Dim, Scalar>& network, const Points<
         }
         Block block = slopes * triangle.s * slopes.transpose();
         for (int i = 0; i < 3; ++i) {
-            const bool left_out = curvature == Curvature::positive_semidefinite && pull(i) < 0;
+            const bool left_out = curvature == HessianForm::positive_semidefinite && pull(i) < 0;
             const Scalar across = left_out ? Scalar(0) : 2 * pull(i);
             const int p = Dim * ((i + 1) % 3);
             const int q = Dim * ((i + 2) % 3);

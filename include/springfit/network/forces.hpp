@@ -87,7 +87,7 @@ void compute_accelerations(const SpringNetwork<Dim, Scalar>& network, const Poin
 }
 
 /// Which second derivative of the elastic energy to take.
-enum class Curvature {
+enum class HessianForm {
     /// Springs k n n' + k (1 - l/L) (I - n n'), indefinite under compression; cells
     /// kappa/V_c (g g' + (V - V_c) d^2 V/dx^2), g = dV/dx, indefinite away from rest and where kappa < 0.
     exact,
@@ -99,19 +99,18 @@ enum class Curvature {
 /// The matrix of a network's springs and cells over its free nodes, filled by `add_stiffness` and `add_damping`. Its
 /// cliques are the springs, then the cells: clique n_springs + c is cell c.
 template <int Dim, std::floating_point Scalar>
-[[nodiscard]] CliqueMatrix<Dim, Scalar> spring_matrix(const SpringNetwork<Dim, Scalar>& network,
-                                                      const FreeNodes& free) {
+[[nodiscard]] BlockMatrix<Dim, Scalar> spring_matrix(const SpringNetwork<Dim, Scalar>& network, const FreeNodes& free) {
     Cliques cliques = cliques_of(network.springs);
     const Cliques cells = cliques_of(network.cells);
     cliques.insert(cliques.end(), cells.begin(), cells.end());
-    return CliqueMatrix<Dim, Scalar>(free, cliques);
+    return BlockMatrix<Dim, Scalar>(free, cliques);
 }
 
 namespace detail {
 
 /// Adds [B -B; -B B] for a spring.
 template <int Dim, std::floating_point Scalar>
-void add_spring_block(CliqueMatrix<Dim, Scalar>& matrix, Index spring, const Eigen::Matrix<Scalar, Dim, Dim>& b) {
+void add_spring_block(BlockMatrix<Dim, Scalar>& matrix, Index spring, const Eigen::Matrix<Scalar, Dim, Dim>& b) {
     Eigen::Matrix<Scalar, 2 * Dim, 2 * Dim> block;
     block.template topLeftCorner<Dim, Dim>() = b;
     block.template topRightCorner<Dim, Dim>() = -b;
@@ -123,18 +122,18 @@ void add_spring_block(CliqueMatrix<Dim, Scalar>& matrix, Index spring, const Eig
 /// Adds the Hessian of the energy of the cells.
 template <int Dim, std::floating_point Scalar>
 void add_volume_stiffness(const SpringNetwork<Dim, Scalar>& network, const Points<Dim, Scalar>& positions,
-                          Curvature curvature, CliqueMatrix<Dim, Scalar>& matrix) {
+                          HessianForm curvature, BlockMatrix<Dim, Scalar>& matrix) {
     constexpr int size = Dim * (Dim + 1);
     for (Index c = 0; c < network.n_cells(); ++c) {
         const Scalar kappa = network.volume_stiffness(c);
-        if (kappa == 0 || (kappa < 0 && curvature == Curvature::positive_semidefinite)) {
+        if (kappa == 0 || (kappa < 0 && curvature == HessianForm::positive_semidefinite)) {
             continue;
         }
         const VolumeCell<Dim, Scalar> cell(network, c, positions);
         const SimplexCorners<Dim, Scalar> gradient = cell.gradient();
         const Eigen::Map<const Eigen::Matrix<Scalar, size, 1>> g(gradient.data());
         Eigen::Matrix<Scalar, size, size> block = (kappa / network.rest_volume(c)) * g * g.transpose();
-        if (curvature == Curvature::exact) {
+        if (curvature == HessianForm::exact) {
             block += (kappa * cell.dilation) * volume_hessian<Dim, Scalar>(cell.corners);
         }
         matrix.add(network.n_springs() + c, block);
@@ -145,14 +144,14 @@ void add_volume_stiffness(const SpringNetwork<Dim, Scalar>& network, const Point
 
 /// Adds the Hessian of the elastic energy at `positions`, N/m, to a `spring_matrix`. O(springs + cells).
 template <int Dim, std::floating_point Scalar>
-void add_stiffness(const SpringNetwork<Dim, Scalar>& network, const Points<Dim, Scalar>& positions, Curvature curvature,
-                   CliqueMatrix<Dim, Scalar>& matrix) {
+void add_stiffness(const SpringNetwork<Dim, Scalar>& network, const Points<Dim, Scalar>& positions,
+                   HessianForm curvature, BlockMatrix<Dim, Scalar>& matrix) {
     using Block = Eigen::Matrix<Scalar, Dim, Dim>;
     for (Index e = 0; e < network.n_springs(); ++e) {
         const detail::SpringVector<Dim, Scalar> spring(network.springs, e, positions);
         const Vector<Dim, Scalar> n = spring.inverse_length * spring.r;
         Scalar geometric = 1 - network.rest_length(e) * spring.inverse_length;
-        if (curvature == Curvature::positive_semidefinite) {
+        if (curvature == HessianForm::positive_semidefinite) {
             geometric = std::max(geometric, Scalar(0));
         }
         const Block b = network.stiffness(e) * (geometric * Block::Identity() + (1 - geometric) * n * n.transpose());
@@ -164,7 +163,7 @@ void add_stiffness(const SpringNetwork<Dim, Scalar>& network, const Points<Dim, 
 /// Adds `factor` times the damping matrix sum_e c_e n_e n_e' at `positions`, N s/m, to a `spring_matrix`. O(springs).
 template <int Dim, std::floating_point Scalar>
 void add_damping(const SpringNetwork<Dim, Scalar>& network, const Points<Dim, Scalar>& positions, Scalar factor,
-                 CliqueMatrix<Dim, Scalar>& matrix) {
+                 BlockMatrix<Dim, Scalar>& matrix) {
     for (Index e = 0; e < network.n_springs(); ++e) {
         const detail::SpringVector<Dim, Scalar> spring(network.springs, e, positions);
         const Vector<Dim, Scalar> n = spring.inverse_length * spring.r;

@@ -59,7 +59,7 @@ template <int Dim>
             motion.rest_positions = nodes.rest_positions;
             for (const auto& positions : frames) {
                 motion.positions.push_back(
-                    carry<Dim, double>(nodes.at_fine, nodes.rest_positions, network.rest_positions, positions));
+                    deform<Dim, double>(nodes.at_fine, nodes.rest_positions, network.rest_positions, positions));
             }
             return motion;
         };

@@ -68,12 +68,12 @@ FreeNodes free_of(const Motion<Dim, Scalar>& reference, Index n_nodes) {
 
 /// What static cases share that have their clamps in common: each once, and which is whose.
 template <int Dim, std::floating_point Scalar>
-struct HeldByCase {
-    std::vector<std::unique_ptr<HeldSprings<Dim, Scalar>>> held;
+struct StiffnessByClamps {
+    std::vector<std::unique_ptr<ClampedStiffness<Dim, Scalar>>> held;
     std::vector<std::size_t> of_case; ///< of no meaning for a case that is not static
 
-    HeldByCase(const SpringNetwork<Dim, Scalar>& network, const std::vector<Scenario<Dim, Scalar>>& scenarios,
-               const std::vector<Motion<Dim, Scalar>>& references, const Execution& execution)
+    StiffnessByClamps(const SpringNetwork<Dim, Scalar>& network, const std::vector<Scenario<Dim, Scalar>>& scenarios,
+                      const std::vector<Motion<Dim, Scalar>>& references, const Execution& execution)
         : of_case(scenarios.size(), 0) {
         std::map<std::vector<int>, std::size_t> numbers;
         std::vector<std::vector<int>> clamps;
@@ -90,7 +90,7 @@ struct HeldByCase {
         held.resize(clamps.size());
         execution.for_chunks(static_cast<Index>(clamps.size()), 1, [&](Index, Index begin, Index) {
             const auto h = static_cast<std::size_t>(begin);
-            held[h] = std::make_unique<HeldSprings<Dim, Scalar>>(network, clamps[h]);
+            held[h] = std::make_unique<ClampedStiffness<Dim, Scalar>>(network, clamps[h]);
         });
     }
 };
@@ -164,7 +164,7 @@ motion_error(const SpringNetwork<Dim, Scalar>& network, const std::vector<Scenar
         n_frames += static_cast<double>(references[c].n_frames());
     }
     const SymplecticEuler<Dim, Scalar> prototype(network, options.step);
-    const detail::HeldByCase<Dim, Scalar> statics_of(network, scenarios, references, options.execution);
+    const detail::StiffnessByClamps<Dim, Scalar> statics_of(network, scenarios, references, options.execution);
     std::vector<detail::SquaredDistances> sums(references.size());
     std::vector<Status> statuses(references.size(), Status::interrupted);
     std::mutex reporting;

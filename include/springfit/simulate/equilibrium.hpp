@@ -78,7 +78,7 @@ Scalar reach(const SpringNetwork<Dim, Scalar>& network, const Points<Dim, Scalar
 /// The same as the function of this name, for a scenario whose clamped nodes are those of `held`. Whether it is stable
 /// is found where `find_stability` says so; that takes a factorisation of its own.
 template <int Dim, std::floating_point Scalar>
-Equilibrium<Dim, Scalar> equilibrium(const HeldSprings<Dim, Scalar>& held, const Scenario<Dim, Scalar>& scenario,
+Equilibrium<Dim, Scalar> equilibrium(const ClampedStiffness<Dim, Scalar>& held, const Scenario<Dim, Scalar>& scenario,
                                      const EquilibriumOptions<Dim, Scalar>& options, bool find_stability) {
     const auto& network = held.network();
     const FreeNodes& free = held.free_nodes();
@@ -102,7 +102,7 @@ Equilibrium<Dim, Scalar> equilibrium(const HeldSprings<Dim, Scalar>& held, const
     const Scalar force = std::max(gradient.template lpNorm<Eigen::Infinity>(), external.cwiseAbs().maxCoeff());
     const Scalar rounding = potential.gradient_rounding(result.positions);
     potential.set_exact_below(Scalar(1e-2) * force);
-    TurnedSolver<Dim, Scalar> solver;
+    CorotatedSolver<Dim, Scalar> solver;
     solver.set_factor(held.factor());
     NewtonOptions<Scalar> newton;
     newton.max_iterations = options.max_iterations;
@@ -139,7 +139,7 @@ template <int Dim, std::floating_point Scalar>
                                                    const EquilibriumOptions<Dim, Scalar>& options = {}) {
     validate(network);
     detail::check(network, scenario, options);
-    const detail::HeldSprings<Dim, Scalar> held(network, clamped_nodes(scenario, network.n_nodes()));
+    const detail::ClampedStiffness<Dim, Scalar> held(network, clamped_nodes(scenario, network.n_nodes()));
     return detail::equilibrium(held, scenario, options, true);
 }
 

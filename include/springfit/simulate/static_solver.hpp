@@ -38,11 +38,11 @@ private:
 
     SpringNetwork<Dim, Scalar> m_network;
     std::vector<int> m_clamped;
-    std::optional<detail::HeldSprings<Dim, Scalar>> m_springs; ///< of m_network, for `balance`
-    bool m_is_linear_ready = false;                            ///< the rest is of the present clamps
+    std::optional<detail::ClampedStiffness<Dim, Scalar>> m_springs; ///< of m_network, for `balance`
+    bool m_is_linear_ready = false;                                 ///< the rest is of the present clamps
     FreeNodes m_free;
-    CliqueMatrix<Dim, Scalar> m_full; ///< stiffness of all nodes at rest
-    CliqueMatrix<Dim, Scalar> m_held; ///< of the free ones
+    BlockMatrix<Dim, Scalar> m_full;  ///< stiffness of all nodes at rest
+    BlockMatrix<Dim, Scalar> m_held;  ///< of the free ones
     SymmetricSolver<Scalar> m_solver; ///< holds its factor where it is positive definite
     bool m_is_held = false;
 };

@@ -25,11 +25,11 @@ template <class NodeArray>
 /// The pattern is fixed at construction, so a solver analyses it once; `add` writes straight to its place. Only the
 /// lower triangle is stored. Memory: 12 bytes per pair of nodes in a clique, besides the matrix.
 template <int Dim, std::floating_point Scalar>
-class CliqueMatrix {
+class BlockMatrix {
 public:
-    CliqueMatrix() = default;
+    BlockMatrix() = default;
 
-    CliqueMatrix(const FreeNodes& free, const Cliques& cliques);
+    BlockMatrix(const FreeNodes& free, const Cliques& cliques);
 
     void set_zero() { m_matrix.coeffs().setZero(); }
 

@@ -17,14 +17,14 @@ namespace springfit {
 /// and twisted states almost as well as at rest. Copies share the factor, which does not change: one per thread.
 /// Memory: 6 bytes per entry of the factor, which is kept in single precision.
 template <int Dim, std::floating_point Scalar>
-class TurnedFactor {
+class CorotatedPreconditioner {
 public:
-    TurnedFactor() = default;
+    CorotatedPreconditioner() = default;
 
     /// Factorises the stiffness at rest over the free coordinates, `lower` its lower triangle. `pairs` `[2 x n_pairs]`
     /// are the neighbours by which the rotations are found, `rest` `[Dim x n_nodes]` where they lie at rest.
-    TurnedFactor(const SparseMatrix<Scalar>& lower, const FreeNodes& free, const NodePairs& pairs,
-                 const Points<Dim, Scalar>& rest);
+    CorotatedPreconditioner(const SparseMatrix<Scalar>& lower, const FreeNodes& free, const NodePairs& pairs,
+                            const Points<Dim, Scalar>& rest);
 
     /// False where the stiffness at rest is not positive definite by a margin above rounding; then nothing else may be
     /// called.

@@ -10,10 +10,10 @@ namespace springfit {
 /// gradients with the turned factor of the body at rest. Where they are slow, as far from the rest shape, or where
 /// there is no such factor, the linear systems are left to a `SymmetricSolver`.
 template <int Dim, std::floating_point Scalar>
-class TurnedSolver {
+class CorotatedSolver {
 public:
     /// For another pattern of matrices; forgets all of the one before.
-    void set_factor(TurnedFactor<Dim, Scalar> factor) {
+    void set_factor(CorotatedPreconditioner<Dim, Scalar> factor) {
         m_factor = std::move(factor);
         m_fallback.reset();
         m_n_slow = 0;
@@ -44,7 +44,7 @@ public:
 private:
     static constexpr int max_iterations = 150; ///< cost less than a factorisation of a solid
 
-    TurnedFactor<Dim, Scalar> m_factor;
+    CorotatedPreconditioner<Dim, Scalar> m_factor;
     SymmetricSolver<Scalar> m_fallback;
     int m_n_slow = 0; ///< solves in a row that the turned factor was too slow for
     bool m_met_negative_curvature = false;

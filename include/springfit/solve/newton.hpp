@@ -39,7 +39,7 @@ struct NewtonReport {
 /// Minimises a smooth problem from `x` by Newton's method with a backtracking line search (Armijo; where the energy no
 /// longer resolves the step, the gradient must fall instead).
 ///
-/// `solver` is a `SymmetricSolver` or a `TurnedSolver` and keeps what it has learnt between calls. A problem with a
+/// `solver` is a `SymmetricSolver` or a `CorotatedSolver` and keeps what it has learnt between calls. A problem with a
 /// semidefinite approximation of its Hessian (`use_semidefinite()`, false where it will not) changes to it where the
 /// solver meets negative curvature, one that knows where it is beyond hope (`is_lost(x)`) ends there, `diverged`. `x`
 /// is the best point on return whatever the status. Stalls, rather than fails or goes on for ever, where rounding stops

@@ -9,7 +9,7 @@ int main() {
     network.stiffness.setConstant(100);
     SpringBody<3, float> body(network);
     body.step(1e-4F);
-    FitProblem problem;
+    AccelerationProblem problem;
     problem.objective = NodeQuadratic(1);
     const int column = 0;
     const double hessian = 2;

@@ -3,7 +3,7 @@
 
 int main() {
     // (theta - 3)^2, theta >= 0
-    springfit::FitProblem problem;
+    springfit::AccelerationProblem problem;
     problem.objective = springfit::NodeQuadratic(1);
     const int column = 0;
     const double hessian = 2;

@@ -17,9 +17,9 @@ bool fit(const Mesh<Dim, Scalar, Cell>& mesh) {
 
     AccelerationObjective<Dim, Scalar> objective(network);
     objective.add(motion);
-    const FitProblem problem = objective.problem();
-    const FitReport fast = dominant_term(problem);
-    const FitReport best = exact(problem);
+    const AccelerationProblem problem = objective.problem();
+    const AccelerationReport fast = dominant_term(problem);
+    const AccelerationReport best = exact(problem);
     const TrajectoryProblem<Dim> motions(network, std::vector{motion}, {.horizon = 2});
     return fast.theta.allFinite() && best.theta.allFinite() && gauss_newton(motions).theta.allFinite();
 }

@@ -166,7 +166,7 @@ private:
         if (m_options.damping == DampingRule::proportional) {
             how.parameters.damping_per_stiffness = m_cases.stiffness_damping;
         }
-        const FitProblem problem = [&] {
+        const AccelerationProblem problem = [&] {
             const Stage stage(m_options.progress, "assemble objective");
             AccelerationObjective<Dim, double> objective(prior, how, m_options.execution);
             for (std::size_t c = 0; c < m_cases.training.size(); ++c) {
@@ -179,7 +179,7 @@ private:
         const auto add = [&](const std::string& name, const auto& solve) {
             Stage stage(m_options.progress, "fit " + name);
             Candidate<Dim> candidate{.name = name, .network = prior};
-            const FitReport& report = candidate.acceleration.emplace(solve(stage.part()));
+            const AccelerationReport& report = candidate.acceleration.emplace(solve(stage.part()));
             m_result.interrupted = m_result.interrupted || stage.stopped();
             if (!usable(report.status)) {
                 return;

@@ -169,7 +169,7 @@ void Model<Dim, S, Cell, Mat>::take_masses() {
 template <int Dim, std::floating_point S, FiniteElementCell Cell, Material Mat>
     requires SpatialDimension<Dim>
 SparseMatrix<S> Model<Dim, S, Cell, Mat>::consistent_mass(const FreeNodes& free) const {
-    CliqueMatrix<Dim, S> mass(free, cliques_of(m_mesh.cells));
+    BlockMatrix<Dim, S> mass(free, cliques_of(m_mesh.cells));
     for_mass_points([&](Index cell, const Vector<n, double>& shape, double volume) {
         Eigen::Matrix<S, Dim * n, Dim * n> block = Eigen::Matrix<S, Dim * n, Dim * n>::Zero();
         for (int b = 0; b < n; ++b) {

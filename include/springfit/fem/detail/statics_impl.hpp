@@ -41,15 +41,15 @@ inline NodePairs pairs_in_cells(const Cliques& cells) {
 /// The factor of the stiffness at rest of the body's preconditioner. Membranes, whose stiffness is singular where they
 /// are flat, have none.
 template <int Dim, std::floating_point Scalar>
-TurnedFactor<Dim, Scalar> rest_factor(const ElasticBody<Dim, Scalar>& body, const FreeNodes& free) {
+CorotatedPreconditioner<Dim, Scalar> rest_factor(const ElasticBody<Dim, Scalar>& body, const FreeNodes& free) {
     if (body.kind().is_membrane) {
         return {};
     }
     const auto plain = body.preconditioner();
     auto stiffness = plain->make_stiffness(free);
     plain->assemble(plain->rest_positions(), stiffness);
-    return TurnedFactor<Dim, Scalar>(stiffness.matrix().lower(), free, pairs_in_cells(body.cells()),
-                                     body.rest_positions());
+    return CorotatedPreconditioner<Dim, Scalar>(stiffness.matrix().lower(), free, pairs_in_cells(body.cells()),
+                                                body.rest_positions());
 }
 
 /// The potential energy W(x) - f_ext . (x - x_rest) over the free coordinates: a model of SmoothProblem.
@@ -180,7 +180,7 @@ Status Statics<Dim, S>::linear_response(const Scenario<Dim, S>& scenario, S time
 }
 
 template <int Dim, std::floating_point S>
-Status Statics<Dim, S>::balance(const Scenario<Dim, S>& scenario, S time, Nodes& positions) {
+Status Statics<Dim, S>::solve_equilibrium(const Scenario<Dim, S>& scenario, S time, Nodes& positions) {
     Nodes start;
     if (m_body->kind().is_linear) {
         if (linear_response(scenario, time, start) != Status::converged) {

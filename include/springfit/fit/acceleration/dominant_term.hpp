@@ -37,16 +37,16 @@ struct DominantTermOptions {
 /// taken from the prior and have no weight. Exact where the motion is one of a spring model within the bounds and every
 /// unknown is determined at one of its nodes at least. Elsewhere Phi may be above that of the prior.
 /// O(nodes * (unknowns at a node)^3); the same bits on any number of threads.
-template <std::same_as<FitProblem> Problem>
-[[nodiscard]] FitReport one_pass(const Problem& problem, const OnePassOptions& options = {});
+template <std::same_as<AccelerationProblem> Problem>
+[[nodiscard]] AccelerationReport one_pass(const Problem& problem, const OnePassOptions& options = {});
 
 /// The dominant-term approximation with sweeps: block descent on Phi. A block is the set of unknowns at a node; each
 /// sweep visits every block once, next always the one whose node term is largest now, and minimises Phi over it
 /// within the bounds. Phi never rises, and the sweeps converge to the exact minimiser (docs/theory.md). Status
 /// `diverged` where the residual is not a number.
 /// O(nodes * (unknowns at a node)^3) per sweep. Throws InvalidArgument where `initial` has the wrong size or is NaN.
-template <std::same_as<FitProblem> Problem>
-[[nodiscard]] FitReport dominant_term(const Problem& problem, const DominantTermOptions& options = {});
+template <std::same_as<AccelerationProblem> Problem>
+[[nodiscard]] AccelerationReport dominant_term(const Problem& problem, const DominantTermOptions& options = {});
 
 } // namespace springfit
 

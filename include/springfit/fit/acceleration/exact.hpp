@@ -23,8 +23,8 @@ struct ExactOptions {
 /// takes beyond a bound is put on that bound; for the rest, H_FF theta_F = g_F - H_FA theta_A is solved; until the set
 /// stays and the KKT residual is small. The equations are solved by conjugate gradients under sweeps of symmetric
 /// Gauss-Seidel [Eisenstat1981], no more accurately than the set deserves, and by sparse Cholesky once they converge so
-/// slowly that factorisations are expected to be quicker (`FitReport::factorisations`). Where the sets do not settle, a
-/// pull to the best point so far is added, stage after stage a smaller one (docs/theory.md).
+/// slowly that factorisations are expected to be quicker (`AccelerationReport::factorisations`). Where the sets do not
+/// settle, a pull to the best point so far is added, stage after stage a smaller one (docs/theory.md).
 ///
 /// The objective is never above that of the start, and theta within the bounds to the last bit. The status is
 /// `converged` up to `tolerance`, `stalled` where rounding allows no more, `iteration_limit`, or `diverged` where the
@@ -32,8 +32,8 @@ struct ExactOptions {
 /// `interrupted`. Throws InvalidArgument for an option out of range and for an `initial` of the wrong size or not
 /// finite. Cost: some tens to hundreds of products with H, each O(nodes * (unknowns at a node)^2); memory, twice that
 /// of the problem beside it; with Cholesky, a few factorisations, O(n^2) in space.
-template <std::same_as<FitProblem> Problem>
-[[nodiscard]] FitReport exact(const Problem& problem, const ExactOptions& options = {});
+template <std::same_as<AccelerationProblem> Problem>
+[[nodiscard]] AccelerationReport exact(const Problem& problem, const ExactOptions& options = {});
 
 } // namespace springfit
 

@@ -96,10 +96,10 @@ public:
     }
 
     /// The quadratic of all frames so far, with bounds; more frames may follow.
-    [[nodiscard]] FitProblem problem() &;
+    [[nodiscard]] AccelerationProblem problem() &;
 
     /// The same from an objective that is not needed any more, whose memory the problem takes over.
-    [[nodiscard]] FitProblem problem() &&;
+    [[nodiscard]] AccelerationProblem problem() &&;
 
 private:
     static constexpr Index nodes_per_chunk = 64;
@@ -147,8 +147,8 @@ private:
     void index_springs(const SpringNetwork<Dim, Scalar>& network);
     void flush();
     void add_node(Index node, Eigen::Matrix<double, detail::FrameBatch<Dim, Scalar>::rows, Eigen::Dynamic>& equations);
-    [[nodiscard]] FitProblem take_problem(std::vector<double> gram);
-    void identify(FitProblem& problem) const;
+    [[nodiscard]] AccelerationProblem take_problem(std::vector<double> gram);
+    void identify(AccelerationProblem& problem) const;
 
     AccelerationOptions<Scalar> m_options;
     Execution m_execution;
@@ -172,7 +172,7 @@ private:
 
 /// The fit of the springs of `network` to `motions`, each with the same weight, ready for any solver.
 template <int Dim, std::floating_point Scalar>
-[[nodiscard]] FitProblem
+[[nodiscard]] AccelerationProblem
 acceleration_problem(const SpringNetwork<Dim, Scalar>& network, const std::vector<Motion<Dim, Scalar>>& motions,
                      const AccelerationOptions<Scalar>& options = {}, const Execution& execution = {}) {
     AccelerationObjective<Dim, Scalar> objective(network, options, execution);

@@ -13,7 +13,7 @@ namespace springfit {
 ///     minimise Phi(theta)  subject to  lower <= theta <= upper
 ///
 /// An unknown that no motion excites has `lower == upper`, its prior; so has one that the caller fixed.
-struct FitProblem {
+struct AccelerationProblem {
     using Unknowns = NodeQuadratic::Unknowns;
 
     NodeQuadratic objective;         ///< Phi
@@ -27,7 +27,7 @@ struct FitProblem {
 };
 
 /// What a solver of the acceleration fit found.
-struct FitReport {
+struct AccelerationReport {
     Status status = Status::failed;
     Values<double> theta;             ///< [n_unknowns], within the bounds to the last bit
     double objective_start = 0;       ///< Phi where the iteration began
@@ -49,7 +49,7 @@ struct FitReport {
 /// How far theta is from optimal, free of units: with x = sqrt(H_uu) theta_u and its gradient q,
 /// max |x - clip(x - q, bounds)| / max |q at theta = 0|; 0 exactly at the minimiser, NaN where anything is. `gradient`
 /// is that of Phi at theta.
-[[nodiscard]] inline double kkt_residual(const FitProblem& problem, const Values<double>& theta,
+[[nodiscard]] inline double kkt_residual(const AccelerationProblem& problem, const Values<double>& theta,
                                          const Values<double>& gradient) {
     const Values<double> curvature = problem.objective.curvature();
     const Values<double> linear = problem.objective.linear();
@@ -68,12 +68,12 @@ struct FitReport {
     return scale == 0 ? largest : largest / scale;
 }
 
-[[nodiscard]] inline double kkt_residual(const FitProblem& problem, const Values<double>& theta) {
+[[nodiscard]] inline double kkt_residual(const AccelerationProblem& problem, const Values<double>& theta) {
     return kkt_residual(problem, theta, problem.objective.product(theta) - problem.objective.linear());
 }
 
 /// Fills in what follows from `report.theta`: objective, residual, multipliers (from the gradient), active bounds.
-inline void complete(const FitProblem& problem, FitReport& report) {
+inline void complete(const AccelerationProblem& problem, AccelerationReport& report) {
     const Values<double>& theta = report.theta;
     Values<double> gradient;
     report.objective = problem.objective.evaluate(theta, gradient);
@@ -105,7 +105,7 @@ inline void complete(const FitProblem& problem, FitReport& report) {
 /// A fitted preload moves the rest length to l = l^0 + q / k. Where k is 0 or l would not be positive, no rest length
 /// can express q, and l^0 stays. Throws InvalidArgument unless the network has as many springs as that one.
 template <int Dim, std::floating_point Scalar>
-void apply(const FitProblem& problem, const Values<double>& theta, SpringNetwork<Dim, Scalar>& network) {
+void apply(const AccelerationProblem& problem, const Values<double>& theta, SpringNetwork<Dim, Scalar>& network) {
     const Parameters& parameters = problem.parameters;
     require(network.n_springs() == parameters.n_springs(), "network", text(parameters.n_springs(), " springs"),
             network.n_springs());
@@ -129,7 +129,7 @@ void apply(const FitProblem& problem, const Values<double>& theta, SpringNetwork
 }
 
 template <int Dim, std::floating_point Scalar>
-void apply(const FitProblem& problem, const FitReport& report, SpringNetwork<Dim, Scalar>& network) {
+void apply(const AccelerationProblem& problem, const AccelerationReport& report, SpringNetwork<Dim, Scalar>& network) {
     apply(problem, report.theta, network);
 }
 

@@ -106,14 +106,14 @@ inline bool Handle::close() noexcept {
     return m_close(std::exchange(m_id, -1)) >= 0;
 }
 
-inline Room::Room(const std::filesystem::path& path, std::string shown)
+inline ReservedSpace::ReservedSpace(const std::filesystem::path& path, std::string shown)
     : m_descriptor(path, O_RDWR | O_CREAT), m_name(std::move(shown)) {
     if (!m_descriptor.is_open()) {
         throw FileError(m_name, text("cannot be created: ", io::detail::reason(errno)));
     }
 }
 
-inline void Room::make(hid_t object, hsize_t bytes) {
+inline void ReservedSpace::make(hid_t object, hsize_t bytes) {
     haddr_t given_out = 0;
     if (object >= 0) {
         const Handle file(H5Iget_file_id(object), H5Fclose);
@@ -130,7 +130,7 @@ inline void Room::make(hid_t object, hsize_t bytes) {
     m_size = size;
 }
 
-inline void Room::trim(hsize_t size) {
+inline void ReservedSpace::trim(hsize_t size) {
     if (::ftruncate(m_descriptor.get(), static_cast<off_t>(size)) != 0) {
         throw FileError(m_name, text("cannot be written: ", io::detail::reason(errno)));
     }
@@ -138,12 +138,12 @@ inline void Room::trim(hsize_t size) {
 
 inline File File::create(const std::filesystem::path& path, std::string shown) {
     const detail::Quiet quiet;
-    Room(path, shown).make(-1, 0);
+    ReservedSpace(path, shown).make(-1, 0);
     Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
     if (!file.is_open()) {
         throw FileError(shown, text("cannot be created: ", detail::last_error()));
     }
-    auto room = std::make_shared<Room>(path, shown); // truncated with the file: made anew
+    auto room = std::make_shared<ReservedSpace>(path, shown); // truncated with the file: made anew
     room->make(file.get(), 0);
     return {std::move(file), std::move(room), std::move(shown)};
 }
@@ -331,7 +331,7 @@ inline void File::close() {
     if (H5Fflush(m_file.get(), H5F_SCOPE_GLOBAL) < 0 || H5Fget_eoa(m_file.get(), &size) < 0 || !m_file.close()) {
         throw FileError(m_name, text("cannot be written: ", detail::last_error()));
     }
-    m_room->trim(size);
+    m_reserved->trim(size);
 }
 
 inline void File::refuse(const std::string& dataset, std::string_view problem) const {
@@ -339,7 +339,7 @@ inline void File::refuse(const std::string& dataset, std::string_view problem) c
 }
 
 inline Series::Series(const File& file, std::string dataset, Shape row)
-    : m_file(file.name()), m_room(file.m_room), m_name(std::move(dataset)), m_row(std::move(row)) {
+    : m_file(file.name()), m_reserved(file.m_reserved), m_name(std::move(dataset)), m_row(std::move(row)) {
     const detail::Quiet quiet;
     for (const hsize_t size : m_row) {
         m_row_bytes *= std::max<hsize_t>(size, 1);
@@ -357,7 +357,7 @@ inline Series::Series(const File& file, std::string dataset, Shape row)
     const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     H5Pset_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data());
     const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
-    H5Pset_chunk_cache(access.get(), 1, chunk_bytes, H5D_CHUNK_CACHE_W0_DEFAULT); // see Room::make
+    H5Pset_chunk_cache(access.get(), 1, chunk_bytes, H5D_CHUNK_CACHE_W0_DEFAULT); // see ReservedSpace::make
     file.make_room(0);
     m_dataset = file.create_dataset(m_name, H5T_IEEE_F64LE, space.get(), properties.get(), access.get());
 }
@@ -365,7 +365,7 @@ inline Series::Series(const File& file, std::string dataset, Shape row)
 template <class T>
 void Series::append(const T* values) {
     const detail::Quiet quiet;
-    m_room->make(m_dataset.get(), m_row_bytes);
+    m_reserved->make(m_dataset.get(), m_row_bytes);
     Shape shape{m_rows + 1};
     Shape start{m_rows};
     Shape count{1};
@@ -391,7 +391,7 @@ void Series::append(const T* values) {
 
 inline void Series::close() {
     const detail::Quiet quiet;
-    m_room->make(m_dataset.get(), m_row_bytes);
+    m_reserved->make(m_dataset.get(), m_row_bytes);
     if (!m_dataset.close()) {
         throw FileError(m_file, text(m_name, ": cannot be written: ", detail::last_error()));
     }

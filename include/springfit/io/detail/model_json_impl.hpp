@@ -162,7 +162,7 @@ void read_cells(const JsonPlace& cells, SpringNetwork<Dim, Scalar>& network) {
 
 /// The surface with the nodes and weights of each of its points.
 template <int Dim, std::floating_point Scalar>
-[[nodiscard]] Json surface_to_json(const CarriedSurface<Dim, Scalar>& surface) {
+[[nodiscard]] Json surface_to_json(const EmbeddedSurface<Dim, Scalar>& surface) {
     Json json;
     json["rest_position"] = columns_to_json(surface.rest_positions);
     json["cells"] = columns_to_json(surface.cells);
@@ -182,8 +182,8 @@ template <int Dim, std::floating_point Scalar>
 }
 
 template <int Dim, std::floating_point Scalar>
-[[nodiscard]] CarriedSurface<Dim, Scalar> read_surface(const JsonPlace& place, Index n_nodes) {
-    CarriedSurface<Dim, Scalar> surface;
+[[nodiscard]] EmbeddedSurface<Dim, Scalar> read_surface(const JsonPlace& place, Index n_nodes) {
+    EmbeddedSurface<Dim, Scalar> surface;
     surface.rest_positions = read_positions<Dim, Scalar>(place.member("rest_position"), "point");
     const Index n_points = surface.n_points();
 

@@ -10,12 +10,12 @@
 
 namespace springfit::ipopt {
 
-inline FitReport exact(const FitProblem& problem, const ExactOptions& options) {
+inline AccelerationReport exact(const AccelerationProblem& problem, const ExactOptions& options) {
     require(options.initial.size() == 0 || options.initial.size() == problem.n_unknowns(), "initial",
             text(problem.n_unknowns(), " values, one per unknown"), options.initial.size());
     require(options.initial.allFinite(), "initial", "finite values", "a value that is not finite");
     const auto begin = std::chrono::steady_clock::now();
-    FitReport report;
+    AccelerationReport report;
     report.theta = options.initial.size() > 0 ? options.initial.cwiseMax(problem.lower).cwiseMin(problem.upper).eval()
                                               : problem.prior;
     report.objective_start = problem.objective.value(report.theta);

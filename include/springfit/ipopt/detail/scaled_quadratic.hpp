@@ -11,7 +11,7 @@ struct ScaledQuadratic : BoxScaling {
     SparseMatrix<double> hessian; ///< lower triangle, unit diagonal
     Values<double> linear;        ///< gradient = H x - linear
 
-    explicit ScaledQuadratic(const FitProblem& problem) {
+    explicit ScaledQuadratic(const AccelerationProblem& problem) {
         const Index n = problem.n_unknowns();
         std::vector<int> number(static_cast<std::size_t>(n), -1);
         Values<double> at_held = problem.prior;

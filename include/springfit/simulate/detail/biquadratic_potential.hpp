@@ -45,8 +45,8 @@ public:
     [[nodiscard]] const SparseMatrix<Scalar>& hessian(const Values<Scalar>& x) {
         free_nodes().template scatter<Dim, Scalar>(x, m_points);
         m_matrix.set_zero();
-        add_stiffness<Dim, Scalar>(m_network, m_points, m_is_near ? Curvature::exact : Curvature::positive_semidefinite,
-                                   m_matrix);
+        add_stiffness<Dim, Scalar>(m_network, m_points,
+                                   m_is_near ? HessianForm::exact : HessianForm::positive_semidefinite, m_matrix);
         if (m_floor > 0) {
             const Scalar stiffest = m_matrix.matrix().diagonal().maxCoeff();
             for (Index f = 0; f < free_nodes().n_free(); ++f) {
@@ -81,7 +81,7 @@ public:
 
 private:
     const BiquadraticNetwork<Dim, Scalar>& m_network;
-    CliqueMatrix<Dim, Scalar> m_matrix;
+    BlockMatrix<Dim, Scalar> m_matrix;
     Points<Dim, Scalar> m_start;
     const Points<Dim, Scalar>& m_external;
     Points<Dim, Scalar> m_points; ///< all nodes; the free ones at the x last asked for

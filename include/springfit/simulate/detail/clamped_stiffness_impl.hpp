@@ -6,17 +6,19 @@
 namespace springfit::detail {
 
 template <int Dim, std::floating_point Scalar>
-HeldSprings<Dim, Scalar>::HeldSprings(const SpringNetwork<Dim, Scalar>& network, const std::vector<int>& clamped)
+ClampedStiffness<Dim, Scalar>::ClampedStiffness(const SpringNetwork<Dim, Scalar>& network,
+                                                const std::vector<int>& clamped)
     : m_network(network), m_potential(network, FreeNodes(network.n_nodes(), clamped)) {
     const Points<Dim, Scalar> unloaded = Points<Dim, Scalar>::Zero(Dim, network.n_nodes());
     auto at_rest = m_potential;
     at_rest.set_statics(network, network.rest_positions, unloaded, Scalar(statics_floor));
     const Values<Scalar> x = free_nodes().template gather<Dim, Scalar>(network.rest_positions);
-    for (const auto curvature : {Curvature::exact, Curvature::positive_semidefinite}) {
-        at_rest.set_exact_below(curvature == Curvature::exact ? std::numeric_limits<Scalar>::infinity() : Scalar(-1));
+    for (const auto curvature : {HessianForm::exact, HessianForm::positive_semidefinite}) {
+        at_rest.set_exact_below(curvature == HessianForm::exact ? std::numeric_limits<Scalar>::infinity() : Scalar(-1));
         Values<Scalar> gradient(x.size());
         at_rest.gradient(x, gradient);
-        m_factor = TurnedFactor<Dim, Scalar>(at_rest.hessian(x), free_nodes(), network.springs, network.rest_positions);
+        m_factor = CorotatedPreconditioner<Dim, Scalar>(at_rest.hessian(x), free_nodes(), network.springs,
+                                                        network.rest_positions);
         if (m_factor.is_usable()) {
             return;
         }

@@ -20,7 +20,7 @@ public:
         : m_matrix(spring_matrix(network, free)) {}
 
     [[nodiscard]] const FreeNodes& free_nodes() const { return m_matrix.free_nodes(); }
-    [[nodiscard]] const CliqueMatrix<Dim, Scalar>& matrix() const { return m_matrix; }
+    [[nodiscard]] const BlockMatrix<Dim, Scalar>& matrix() const { return m_matrix; }
 
     /// Clamped nodes stand as in `positions`, now and in what follows; `external` is held by pointer until the next.
     ///
@@ -72,7 +72,7 @@ public:
     [[nodiscard]] Scalar gradient_rounding(const Points<Dim, Scalar>& positions) const;
 
 private:
-    CliqueMatrix<Dim, Scalar> m_matrix;
+    BlockMatrix<Dim, Scalar> m_matrix;
     const SpringNetwork<Dim, Scalar>* m_network = nullptr;
     const Points<Dim, Scalar>* m_external = nullptr;
     Scalar m_floor = 0;

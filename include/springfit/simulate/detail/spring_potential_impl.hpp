@@ -35,9 +35,9 @@ template <int Dim, std::floating_point Scalar>
 auto SpringPotential<Dim, Scalar>::hessian(const Values<Scalar>& x) -> const SparseMatrix<Scalar>& {
     free_nodes().template scatter<Dim, Scalar>(x, m_points);
     m_matrix.set_zero();
-    add_stiffness<Dim, Scalar>(*m_network, m_points,
-                               m_is_near || !m_is_semidefinite ? Curvature::exact : Curvature::positive_semidefinite,
-                               m_matrix);
+    add_stiffness<Dim, Scalar>(
+        *m_network, m_points, m_is_near || !m_is_semidefinite ? HessianForm::exact : HessianForm::positive_semidefinite,
+        m_matrix);
     if (m_floor > 0) {
         const Scalar stiffest = m_matrix.matrix().diagonal().maxCoeff();
         for (Index f = 0; f < free_nodes().n_free(); ++f) {

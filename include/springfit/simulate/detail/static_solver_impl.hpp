@@ -6,8 +6,8 @@
 namespace springfit {
 
 template <int Dim, std::floating_point Scalar>
-Status NetworkStatics<Dim, Scalar>::balance(const Scenario<Dim, Scalar>& scenario, Scalar time,
-                                            Points<Dim, Scalar>& positions) {
+Status NetworkStatics<Dim, Scalar>::solve_equilibrium(const Scenario<Dim, Scalar>& scenario, Scalar time,
+                                                      Points<Dim, Scalar>& positions) {
     EquilibriumOptions<Dim, Scalar> options;
     options.time = time;
     use_clamps(scenario);
@@ -72,9 +72,9 @@ void NetworkStatics<Dim, Scalar>::prepare_linear() {
     m_is_linear_ready = true;
     m_free = FreeNodes(m_network.n_nodes(), m_clamped);
     m_full = spring_matrix(m_network, FreeNodes(m_network.n_nodes(), {}));
-    add_stiffness<Dim, Scalar>(m_network, m_network.rest_positions, Curvature::exact, m_full);
+    add_stiffness<Dim, Scalar>(m_network, m_network.rest_positions, HessianForm::exact, m_full);
     m_held = spring_matrix(m_network, m_free);
-    add_stiffness<Dim, Scalar>(m_network, m_network.rest_positions, Curvature::exact, m_held);
+    add_stiffness<Dim, Scalar>(m_network, m_network.rest_positions, HessianForm::exact, m_held);
     m_solver.reset();
     m_solver.set_max_diagonal_iterations(0);
     m_is_held = detail::is_positive_definite<Scalar>(m_solver, m_held.matrix());

@@ -6,7 +6,7 @@
 namespace springfit {
 
 template <int Dim, std::floating_point Scalar>
-CliqueMatrix<Dim, Scalar>::CliqueMatrix(const FreeNodes& free, const Cliques& cliques) : m_free(free) {
+BlockMatrix<Dim, Scalar>::BlockMatrix(const FreeNodes& free, const Cliques& cliques) : m_free(free) {
     const Index n = free.n_free();
     std::vector<std::vector<int>> below(static_cast<std::size_t>(n)); // free node numbers >= own, per column
     for (const auto& clique : cliques) {
@@ -49,7 +49,7 @@ CliqueMatrix<Dim, Scalar>::CliqueMatrix(const FreeNodes& free, const Cliques& cl
 
 template <int Dim, std::floating_point Scalar>
 template <class Block>
-void CliqueMatrix<Dim, Scalar>::add(Index clique, const Block& block) {
+void BlockMatrix<Dim, Scalar>::add(Index clique, const Block& block) {
     const std::vector<Place>& places = m_places[static_cast<std::size_t>(clique)];
     const Index size = block.cols() / Dim;
     for (Index b = 0; b < size; ++b) {
@@ -69,7 +69,7 @@ void CliqueMatrix<Dim, Scalar>::add(Index clique, const Block& block) {
 }
 
 template <int Dim, std::floating_point Scalar>
-void CliqueMatrix<Dim, Scalar>::locate_blocks(const Cliques& cliques) {
+void BlockMatrix<Dim, Scalar>::locate_blocks(const Cliques& cliques) {
     m_places.resize(cliques.size());
     for (std::size_t c = 0; c < cliques.size(); ++c) {
         m_places[c].reserve(cliques[c].size() * cliques[c].size());
@@ -82,7 +82,7 @@ void CliqueMatrix<Dim, Scalar>::locate_blocks(const Cliques& cliques) {
 }
 
 template <int Dim, std::floating_point Scalar>
-auto CliqueMatrix<Dim, Scalar>::locate(int row, int column) const -> Place {
+auto BlockMatrix<Dim, Scalar>::locate(int row, int column) const -> Place {
     if (column < 0 || row < column) {
         return {};
     }

@@ -6,8 +6,8 @@
 namespace springfit {
 
 template <int Dim, std::floating_point Scalar>
-TurnedFactor<Dim, Scalar>::TurnedFactor(const SparseMatrix<Scalar>& lower, const FreeNodes& free,
-                                        const NodePairs& pairs, const Points<Dim, Scalar>& rest) {
+CorotatedPreconditioner<Dim, Scalar>::CorotatedPreconditioner(const SparseMatrix<Scalar>& lower, const FreeNodes& free,
+                                                              const NodePairs& pairs, const Points<Dim, Scalar>& rest) {
     auto made = std::make_shared<Rest>();
     made->free = free;
     made->pairs = pairs;
@@ -27,7 +27,7 @@ TurnedFactor<Dim, Scalar>::TurnedFactor(const SparseMatrix<Scalar>& lower, const
 }
 
 template <int Dim, std::floating_point Scalar>
-void TurnedFactor<Dim, Scalar>::turn(const Points<Dim, Scalar>& x) {
+void CorotatedPreconditioner<Dim, Scalar>::turn(const Points<Dim, Scalar>& x) {
     Points<Dim * Dim, Scalar> sums = Points<Dim * Dim, Scalar>::Zero(Dim * Dim, x.cols());
     for (Index e = 0; e < m_rest->pairs.cols(); ++e) {
         const int i = m_rest->pairs(0, e);
@@ -44,7 +44,7 @@ void TurnedFactor<Dim, Scalar>::turn(const Points<Dim, Scalar>& x) {
 }
 
 template <int Dim, std::floating_point Scalar>
-void TurnedFactor<Dim, Scalar>::apply(const Values<Scalar>& right, Values<Scalar>& solution) const {
+void CorotatedPreconditioner<Dim, Scalar>::apply(const Values<Scalar>& right, Values<Scalar>& solution) const {
     using Work = typename detail::NodeCholesky<Dim, Scalar>::Work;
     const std::vector<int>& order = m_rest->factor.order();
     Work work = Work::Zero(Work::RowsAtCompileTime, m_rotations.cols());
@@ -61,7 +61,7 @@ void TurnedFactor<Dim, Scalar>::apply(const Values<Scalar>& right, Values<Scalar
 }
 
 template <int Dim, std::floating_point Scalar>
-auto TurnedFactor<Dim, Scalar>::rotation_of(const Rotation& a) -> Rotation {
+auto CorotatedPreconditioner<Dim, Scalar>::rotation_of(const Rotation& a) -> Rotation {
     if constexpr (Dim == 2) {
         const Scalar c = a(0, 0) + a(1, 1);
         const Scalar s = a(1, 0) - a(0, 1);

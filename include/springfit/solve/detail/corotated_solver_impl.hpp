@@ -6,8 +6,8 @@
 namespace springfit {
 
 template <int Dim, std::floating_point Scalar>
-bool TurnedSolver<Dim, Scalar>::solve(const SymmetricMatrix<Scalar>& a, const Values<Scalar>& b, Values<Scalar>& x,
-                                      Scalar tolerance) {
+bool CorotatedSolver<Dim, Scalar>::solve(const SymmetricMatrix<Scalar>& a, const Values<Scalar>& b, Values<Scalar>& x,
+                                         Scalar tolerance) {
     m_met_negative_curvature = false;
     if (m_factor.is_usable() && m_n_slow < 2) {
         const auto outcome =

@@ -15,11 +15,11 @@ namespace springfit::detail {
 /// so that an iteration takes the two sweeps that the preconditioner alone would take, and no product with A
 /// [Eisenstat1981]. What is iterated is r = W^-1 times the residual.
 template <std::floating_point Scalar>
-class SweepGradients {
+class EisenstatCg {
 public:
     using Sweeps = SymmetricGaussSeidel<Scalar>;
 
-    SweepGradients(const NodeQuadratic& objective, const Values<double>& curvature, const Execution& execution)
+    EisenstatCg(const NodeQuadratic& objective, const Values<double>& curvature, const Execution& execution)
         : m_execution(execution), m_sweeps(objective, curvature, execution) {}
 
     [[nodiscard]] Index n_entries() const { return m_sweeps.n_entries(); }

@@ -32,7 +32,7 @@ public:
     }
 
     /// The best point so far, and Phi and number of steps into `report`.
-    Unknowns run(FitReport& report) {
+    Unknowns run(AccelerationReport& report) {
         const double offset = report.objective_start - value();
         m_best = m_start_value = value();
         m_best_theta = m_theta;
@@ -238,20 +238,20 @@ private:
     double m_residual = 0, m_first_residual = 1;
     Unknowns m_best_theta;
     double m_best = 0, m_best_residual = 1, m_start_value = 0;
-    FreeSolver<decltype(Problem::objective)> m_solver;
+    ReducedSolver<decltype(Problem::objective)> m_solver;
 };
 
 } // namespace detail
 
-template <std::same_as<FitProblem> Problem>
-FitReport exact(const Problem& problem, const ExactOptions& options) {
+template <std::same_as<AccelerationProblem> Problem>
+AccelerationReport exact(const Problem& problem, const ExactOptions& options) {
     require(options.tolerance > 0 && options.tolerance < 1, "tolerance", "a value in (0, 1)", options.tolerance);
     require(options.max_iterations >= 0, "max_iterations", "a number not below 0", options.max_iterations);
     require(options.initial.size() == 0 || options.initial.size() == problem.n_unknowns(), "initial",
             text(problem.n_unknowns(), " values, one per unknown"), options.initial.size());
     require(options.initial.allFinite(), "initial", "finite values", "a value that is not finite");
     const detail::Stopwatch watch;
-    FitReport report;
+    AccelerationReport report;
     const typename Problem::Unknowns start =
         options.initial.size() > 0 ? options.initial.cwiseMax(problem.lower).cwiseMin(problem.upper).eval()
                                    : problem.prior;

@@ -163,14 +163,14 @@ void AccelerationObjective<Dim, Scalar>::add_node(
 
 template <int Dim, std::floating_point Scalar>
     requires SpatialDimension<Dim>
-FitProblem AccelerationObjective<Dim, Scalar>::problem() & {
+AccelerationProblem AccelerationObjective<Dim, Scalar>::problem() & {
     flush();
     return take_problem(m_gram);
 }
 
 template <int Dim, std::floating_point Scalar>
     requires SpatialDimension<Dim>
-FitProblem AccelerationObjective<Dim, Scalar>::problem() && {
+AccelerationProblem AccelerationObjective<Dim, Scalar>::problem() && {
     flush();
     m_batch = {};
     return take_problem(std::move(m_gram));
@@ -179,7 +179,7 @@ FitProblem AccelerationObjective<Dim, Scalar>::problem() && {
 /// Turns the triangles of [A y]'[A y] into the node terms, in place: what goes into a term lies behind where it goes.
 template <int Dim, std::floating_point Scalar>
     requires SpatialDimension<Dim>
-FitProblem AccelerationObjective<Dim, Scalar>::take_problem(std::vector<double> gram) {
+AccelerationProblem AccelerationObjective<Dim, Scalar>::take_problem(std::vector<double> gram) {
     std::vector<bool> used(static_cast<std::size_t>(m_parameters.n_unknowns()), false);
     for (std::size_t i = 0; i < m_seen_free.size(); ++i) {
         for (Index c = m_column_begin[i]; m_seen_free[i] && c < m_column_begin[i + 1]; ++c) {
@@ -216,7 +216,7 @@ FitProblem AccelerationObjective<Dim, Scalar>::take_problem(std::vector<double> 
     gram.resize(to);
     terms.hessian = std::move(gram);
 
-    FitProblem problem;
+    AccelerationProblem problem;
     problem.parameters = m_parameters.subset(used);
     problem.objective = NodeQuadratic(n_used, std::move(terms));
     identify(problem);
@@ -226,7 +226,7 @@ FitProblem AccelerationObjective<Dim, Scalar>::take_problem(std::vector<double> 
 /// Sets bounds, prior and ridge, and holds what no motion excites at its prior.
 template <int Dim, std::floating_point Scalar>
     requires SpatialDimension<Dim>
-void AccelerationObjective<Dim, Scalar>::identify(FitProblem& problem) const {
+void AccelerationObjective<Dim, Scalar>::identify(AccelerationProblem& problem) const {
     problem.lower = problem.parameters.lower();
     problem.upper = problem.parameters.upper();
     problem.prior = problem.parameters.prior();

@@ -6,10 +6,10 @@
 
 namespace springfit {
 
-template <std::same_as<FitProblem> Problem>
-FitReport one_pass(const Problem& problem, const OnePassOptions& options) {
+template <std::same_as<AccelerationProblem> Problem>
+AccelerationReport one_pass(const Problem& problem, const OnePassOptions& options) {
     const detail::Stopwatch watch;
-    FitReport report;
+    AccelerationReport report;
     report.theta = detail::one_pass_values(problem, options.execution);
     report.objective_start = problem.objective.value(problem.prior);
     report.iterations = 1;

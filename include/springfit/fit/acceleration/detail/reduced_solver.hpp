@@ -18,13 +18,13 @@ namespace springfit::detail {
 /// preconditioned by the factor of this set, or by that of an earlier one while the two differ little. What decides is
 /// a count of operations, not of seconds, so that results repeat.
 template <class Objective>
-class FreeSolver {
+class ReducedSolver {
 public:
     using Unknowns = typename Objective::Unknowns;
 
     /// `curvature` is the diagonal of H; `go_on` is asked now and then.
-    FreeSolver(const Objective& objective, const Unknowns& curvature, const Execution& execution,
-               std::function<bool()> go_on)
+    ReducedSolver(const Objective& objective, const Unknowns& curvature, const Execution& execution,
+                  std::function<bool()> go_on)
         : m_objective(objective), m_curvature(curvature), m_execution(execution), m_product(objective, execution),
           m_go_on(std::move(go_on)) {}
 
@@ -148,7 +148,7 @@ private:
     }
 
     template <class Scalar>
-    Outcome by_sweeps(SweepGradients<Scalar>& gradients, const Unknowns& weight, double size, double target,
+    Outcome by_sweeps(EisenstatCg<Scalar>& gradients, const Unknowns& weight, double size, double target,
                       Unknowns& theta, Unknowns& gradient) {
         constexpr double accuracy = std::is_same_v<Scalar, float> ? 1e-4 : 1e-15;
         gradients.start(weight, gradient, m_ridge, size);
@@ -218,8 +218,8 @@ private:
     Execution m_execution;
     NodeProduct<Objective> m_product;
     std::function<bool()> m_go_on;
-    std::optional<SweepGradients<float>> m_single;
-    std::optional<SweepGradients<double>> m_double; ///< once the other is of no more use
+    std::optional<EisenstatCg<float>> m_single;
+    std::optional<EisenstatCg<double>> m_double; ///< once the other is of no more use
     double m_iteration_cost = 0;
     double m_final = 0;
     double m_ridge = 0;

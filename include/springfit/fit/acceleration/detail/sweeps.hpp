@@ -209,12 +209,12 @@ typename Problem::Unknowns sweep_start(const Problem& problem, const DominantTer
 
 } // namespace detail
 
-template <std::same_as<FitProblem> Problem>
-FitReport dominant_term(const Problem& problem, const DominantTermOptions& options) {
+template <std::same_as<AccelerationProblem> Problem>
+AccelerationReport dominant_term(const Problem& problem, const DominantTermOptions& options) {
     require(options.max_sweeps >= 0, "max_sweeps", "a number not below 0", options.max_sweeps);
     require(options.tolerance >= 0, "tolerance", "a value not below 0", options.tolerance);
     const detail::Stopwatch watch;
-    FitReport report;
+    AccelerationReport report;
     report.theta = detail::sweep_start(problem, options);
     report.objective_start = problem.objective.value(report.theta);
     detail::BlockDescent descent(problem, report.theta);

@@ -9,10 +9,11 @@ namespace springfit::detail {
 /// surroundings in each column. What a body answers hardly depends on how it is turned, so this preconditions bent and
 /// twisted states almost as well as the rest shape.
 template <int Dim>
-class RotatedFactor {
+class CorotatedBlockPreconditioner {
 public:
     /// The rotations at `positions`, none where no spring has turned by more than 0.03. O(springs x columns).
-    RotatedFactor(const SpringNetwork<Dim, double>& network, const BlockCholesky& factor, const ColumnBlock& positions)
+    CorotatedBlockPreconditioner(const SpringNetwork<Dim, double>& network, const BlockCholesky& factor,
+                                 const ColumnBlock& positions)
         : m_factor(&factor) {
         if (!is_turned(network, positions)) {
             return;

@@ -65,7 +65,7 @@ struct ImplicitSystem {
     }
 
     /// product = (w M + K(y) + d D(old)) direction, for a direction that leaves clamped nodes where they are.
-    void multiply(const ColumnBlock& y, const ColumnBlock& old, Curvature curvature, const ColumnBlock& direction,
+    void multiply(const ColumnBlock& y, const ColumnBlock& old, HessianForm curvature, const ColumnBlock& direction,
                   ColumnBlock& product) const {
         product.setZero(y.rows(), y.cols());
         add_stiffness_product<Dim>(network, y, curvature, direction, product);
@@ -203,18 +203,18 @@ bool solve_implicit(const ImplicitSystem<Dim>& system, const ColumnBlock& target
         if (!any_above(unbalanced, 1, goal)) {
             return true;
         }
-        const RotatedFactor<Dim> factor(system.network, system.factor, y);
-        const auto newton_step = [&](Curvature curvature) {
+        const CorotatedBlockPreconditioner<Dim> factor(system.network, system.factor, y);
+        const auto newton_step = [&](HessianForm curvature) {
             return conjugate_gradients(
                 factor, [&](const ColumnBlock& p, ColumnBlock& q) { system.multiply(y, old, curvature, p, q); }, force,
                 1e-2, 100, direction);
         };
         // Far from balance, compressed springs make the exact curvature so indefinite that its truncated step is poor.
         near = near || !any_above(unbalanced, 1e-2, largest);
-        const bool definite = near && newton_step(Curvature::exact);
+        const bool definite = near && newton_step(HessianForm::exact);
         if (!definite && any_above(unbalanced, 1e-2, largest)) {
             near = false;
-            (void)newton_step(Curvature::positive_semidefinite);
+            (void)newton_step(HessianForm::positive_semidefinite);
         }
         const Eigen::ArrayXd slope = column_dots(force, direction);
         const Eigen::ArrayXd norm = column_dots(force, force);

@@ -220,7 +220,7 @@ bool TrajectoryPoint<Dim>::move_to(const Values<double>& theta, const Trajectory
              std::initializer_list<const Points<Dim, double>*>{&m_network.rest_positions, &group.mean}) {
             auto matrix = group.pattern;
             matrix.set_zero();
-            add_stiffness<Dim, double>(m_network, *shape, Curvature::exact, matrix);
+            add_stiffness<Dim, double>(m_network, *shape, HessianForm::exact, matrix);
             if (group.step > 0) {
                 const double part = alpha * group.step;
                 add_damping<Dim, double>(m_network, *shape, 1 / part, matrix);

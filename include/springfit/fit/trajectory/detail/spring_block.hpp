@@ -197,9 +197,9 @@ void add_elastic_forces(const SpringNetwork<Dim, double>& network, const ColumnB
 /// product += K(positions) direction, K the Hessian of the elastic energy, exact or made positive semidefinite as
 /// `add_stiffness` does.
 template <int Dim>
-void add_stiffness_product(const SpringNetwork<Dim, double>& network, const ColumnBlock& positions, Curvature curvature,
-                           const ColumnBlock& direction, ColumnBlock& product) {
-    const bool exact = curvature == Curvature::exact;
+void add_stiffness_product(const SpringNetwork<Dim, double>& network, const ColumnBlock& positions,
+                           HessianForm curvature, const ColumnBlock& direction, ColumnBlock& product) {
+    const bool exact = curvature == HessianForm::exact;
     for_springs<Dim>(network, positions, [&](Index e, int i, int j, Index column, const SpringLanes<Dim>& spring) {
         const auto moved = difference<Dim>(direction, j, i, column);
         ColumnLanes across = network.stiffness(e) * (1 - network.rest_length(e) * spring.inverse_length);

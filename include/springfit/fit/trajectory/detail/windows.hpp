@@ -25,7 +25,7 @@ struct WindowGroup {
     std::vector<int> clamped;
     FreeNodes free;
     double step = 0; ///< h, s; 0: statics
-    CliqueMatrix<Dim, double> pattern;
+    BlockMatrix<Dim, double> pattern;
     Points<Dim, double> mean; ///< positions that its motions begin with
     int n_motions = 0;
 };
@@ -41,7 +41,7 @@ struct StepRule {
 /// What a simulated block keeps: its states at checkpoints, and all steps of one segment between them.
 template <int Dim>
 struct WindowTape {
-    std::vector<RotatedFactor<Dim>> turned;         ///< of a static case: the factor turned to the equilibrium
+    std::vector<CorotatedBlockPreconditioner<Dim>> turned; ///< of a static case: the factor turned to the equilibrium
     std::vector<ColumnBlock> positions, velocities; ///< at the start of each segment; of a static case, the equilibrium
     Index segment = -1;                             ///< whose steps are kept
     std::vector<ColumnBlock> x, v, y;               ///< of each step of that segment
@@ -117,7 +117,8 @@ public:
         return backwards(
             tape, [&](const ColumnBlock& state, Index frame) { return weighted(residual(state, frame)); },
             [&](const ColumnBlock& y, const ColumnBlock& x, const ColumnBlock& right, ColumnBlock& z) {
-                return solve(RotatedFactor<Dim>(m_system.network, m_system.factor, y), y, x, right, exactly, z);
+                return solve(CorotatedBlockPreconditioner<Dim>(m_system.network, m_system.factor, y), y, x, right,
+                             exactly, z);
             },
             true, derivative);
     }
@@ -127,7 +128,8 @@ public:
     void add_product(WindowTape<Dim>& tape, const NetworkValues& change, NetworkValues& derivative) const {
         const auto solve_step = [&](const ColumnBlock& y, const ColumnBlock& x, const ColumnBlock& right,
                                     ColumnBlock& z) {
-            (void)solve(RotatedFactor<Dim>(m_system.network, m_system.factor, y), y, x, right, loosely, z);
+            (void)solve(CorotatedBlockPreconditioner<Dim>(m_system.network, m_system.factor, y), y, x, right, loosely,
+                        z);
             return true;
         };
         if (m_windows.frames == 0) {
@@ -270,10 +272,11 @@ private:
     static constexpr Precision exactly{1e-10, 300}; ///< for gradients
     static constexpr Precision loosely{1e-2, 20};   ///< for products with a Gauss-Newton matrix
 
-    [[nodiscard]] bool solve(const RotatedFactor<Dim>& factor, const ColumnBlock& y, const ColumnBlock& old,
-                             const ColumnBlock& right, const Precision& precision, ColumnBlock& z) const {
+    [[nodiscard]] bool solve(const CorotatedBlockPreconditioner<Dim>& factor, const ColumnBlock& y,
+                             const ColumnBlock& old, const ColumnBlock& right, const Precision& precision,
+                             ColumnBlock& z) const {
         return conjugate_gradients(
-            factor, [&](const ColumnBlock& p, ColumnBlock& q) { m_system.multiply(y, old, Curvature::exact, p, q); },
+            factor, [&](const ColumnBlock& p, ColumnBlock& q) { m_system.multiply(y, old, HessianForm::exact, p, q); },
             right, precision.tolerance, precision.max_iterations, z);
     }
 
@@ -296,7 +299,8 @@ private:
                     add_damping_parameter_forces<Dim>(m_system.network, change, x, m_system.damping * (y - x), force);
                 }
                 m_system.hold(force);
-                (void)solve(RotatedFactor<Dim>(m_system.network, m_system.factor, y), y, x, force, loosely, dy);
+                (void)solve(CorotatedBlockPreconditioner<Dim>(m_system.network, m_system.factor, y), y, x, force,
+                            loosely, dy);
                 finish_step(dy, dx, dv);
                 if (const Index step = segment * m_interval + s + 1; step % m_rule.steps_per_frame == 0) {
                     frames.push_back(dx);

@@ -12,10 +12,10 @@ SPRINGFIT_INSTANTIATION class ImplicitBody<3, float>;
 SPRINGFIT_INSTANTIATION class ProjectiveBody<2, float>;
 SPRINGFIT_INSTANTIATION class ProjectiveBody<3, float>;
 SPRINGFIT_INSTANTIATION class detail::SpringPotential<2, float>;
-SPRINGFIT_INSTANTIATION class detail::HeldSprings<2, float>;
+SPRINGFIT_INSTANTIATION class detail::ClampedStiffness<2, float>;
 SPRINGFIT_INSTANTIATION NewtonReport<float> minimise(detail::SpringPotential<2, float>&, Values<float>&,
-                                                     TurnedSolver<2, float>&, const NewtonOptions<float>&);
-SPRINGFIT_INSTANTIATION Equilibrium<2, float> detail::equilibrium(const detail::HeldSprings<2, float>&,
+                                                     CorotatedSolver<2, float>&, const NewtonOptions<float>&);
+SPRINGFIT_INSTANTIATION Equilibrium<2, float> detail::equilibrium(const detail::ClampedStiffness<2, float>&,
                                                                   const Scenario<2, float>&,
                                                                   const EquilibriumOptions<2, float>&, bool);
 SPRINGFIT_INSTANTIATION class SymplecticEuler<2, float>;
@@ -25,10 +25,10 @@ SPRINGFIT_INSTANTIATION Equilibrium<2, float> equilibrium(const SpringNetwork<2,
                                                           const EquilibriumOptions<2, float>&);
 SPRINGFIT_INSTANTIATION float stable_step(const SpringNetwork<2, float>&, const std::vector<int>&);
 SPRINGFIT_INSTANTIATION class detail::SpringPotential<3, float>;
-SPRINGFIT_INSTANTIATION class detail::HeldSprings<3, float>;
+SPRINGFIT_INSTANTIATION class detail::ClampedStiffness<3, float>;
 SPRINGFIT_INSTANTIATION NewtonReport<float> minimise(detail::SpringPotential<3, float>&, Values<float>&,
-                                                     TurnedSolver<3, float>&, const NewtonOptions<float>&);
-SPRINGFIT_INSTANTIATION Equilibrium<3, float> detail::equilibrium(const detail::HeldSprings<3, float>&,
+                                                     CorotatedSolver<3, float>&, const NewtonOptions<float>&);
+SPRINGFIT_INSTANTIATION Equilibrium<3, float> detail::equilibrium(const detail::ClampedStiffness<3, float>&,
                                                                   const Scenario<3, float>&,
                                                                   const EquilibriumOptions<3, float>&, bool);
 SPRINGFIT_INSTANTIATION class SymplecticEuler<3, float>;

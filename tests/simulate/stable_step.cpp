@@ -4,14 +4,14 @@
 
 #include <springfit/simulate/symplectic_euler.hpp>
 
-#include "example.hpp"
+#include "body/example.hpp"
 
 using namespace springfit;
 
 namespace {
 
 template <int Dim>
-DenseMatrix<double> dense(const CliqueMatrix<Dim, double>& matrix) {
+DenseMatrix<double> dense(const BlockMatrix<Dim, double>& matrix) {
     const DenseMatrix<double> lower = matrix.matrix();
     return lower.selfadjointView<Eigen::Lower>();
 }
@@ -22,7 +22,7 @@ double true_limit(const SpringNetwork<Dim, double>& network, const Points<Dim, d
                   const std::vector<int>& fixed) {
     const FreeNodes free(network.n_nodes(), fixed);
     auto stiffness = spring_matrix(network, free);
-    add_stiffness<Dim, double>(network, positions, Curvature::exact, stiffness);
+    add_stiffness<Dim, double>(network, positions, HessianForm::exact, stiffness);
     auto damping = spring_matrix(network, free);
     add_damping<Dim, double>(network, positions, 1., damping);
     Values<double> scale(Dim * free.n_free());

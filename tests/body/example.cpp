@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "example.hpp"
+#include "body/example.hpp"
 
 #undef SPRINGFIT_INSTANTIATION
 #define SPRINGFIT_INSTANTIATION template

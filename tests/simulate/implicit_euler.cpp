@@ -6,7 +6,7 @@
 #include <springfit/simulate/implicit_euler.hpp>
 #include <springfit/simulate/symplectic_euler.hpp>
 
-#include "example.hpp"
+#include "body/example.hpp"
 
 using namespace springfit;
 

@@ -8,7 +8,7 @@
 #include <springfit/network/forces.hpp>
 #include <springfit/simulate/stable_step.hpp>
 
-#include "example.hpp"
+#include "body/example.hpp"
 
 using namespace springfit;
 

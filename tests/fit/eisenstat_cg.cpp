@@ -116,7 +116,7 @@ TEST_CASE_TEMPLATE("conjugate gradients by sweeps end where the free gradient is
         const Values<double> gradient =
             1e-3 * random_values(h.n_unknowns(), random).cwiseProduct(curvature.cwiseSqrt());
         const Values<double> scaled = gradient.cwiseProduct(weight.cwiseSqrt());
-        detail::SweepGradients<Scalar> gradients(h, curvature, {});
+        detail::EisenstatCg<Scalar> gradients(h, curvature, {});
         gradients.start(weight, gradient, ridge, scaled.cwiseAbs().maxCoeff());
         CHECK(gradients.largest() == 1);
         Values<double> step, part;
@@ -142,7 +142,7 @@ TEST_CASE("a matrix that is not positive definite is noticed, and the step stays
     // H = [[1, 2], [2, 1]]
     NodeQuadratic h(2);
     h.add_term(0, std::vector<int>{0, 1}, std::vector<double>{1, 2, 1}, std::vector<double>{0, 0}, 0);
-    detail::SweepGradients<double> gradients(h, h.curvature(), {});
+    detail::EisenstatCg<double> gradients(h, h.curvature(), {});
     gradients.start(Values<double>::Ones(2), Values<double>{{1, -1}}, 0, 1);
     CHECK_FALSE(gradients.iterate());
     Values<double> step;
@@ -159,13 +159,13 @@ TEST_CASE_TEMPLATE("unknowns that share no term need one iteration, and none at 
     for (int u = 0; u < 39; ++u) {
         weight(u) = 1 / (u + 1.);
     }
-    detail::SweepGradients<Scalar> gradients(h, h.curvature(), {});
+    detail::EisenstatCg<Scalar> gradients(h, h.curvature(), {});
     gradients.start(weight, Values<double>::Ones(40), 0, 1);
     CHECK(gradients.iterate());
     Values<double> step;
     gradients.take_step(step);
     CHECK(test::relative_difference(step, -weight) < test::rounding<Scalar>());
-    detail::SweepGradients<Scalar> empty(NodeQuadratic(0), Values<double>(0), {});
+    detail::EisenstatCg<Scalar> empty(NodeQuadratic(0), Values<double>(0), {});
     empty.start(Values<double>(0), Values<double>(0), 0, 1);
     CHECK_FALSE(empty.iterate());
 }
@@ -177,7 +177,7 @@ TEST_CASE_TEMPLATE("sweeps give the same bits on any number of threads", Scalar,
     const Values<double> weight = some_weights(curvature);
     const Values<double> gradient = random_values(h.n_unknowns(), random).cwiseProduct(curvature.cwiseSqrt());
     const auto step_with = [&](const Execution& execution) {
-        detail::SweepGradients<Scalar> gradients(h, curvature, execution);
+        detail::EisenstatCg<Scalar> gradients(h, curvature, execution);
         gradients.start(weight, gradient, 0.1, 1);
         for (int i = 0; i < 10; ++i) {
             CHECK(gradients.iterate());

@@ -8,7 +8,7 @@
 #include <springfit/body/spring_body.hpp>
 #include <springfit/simulate/stable_step.hpp>
 
-#include "example.hpp"
+#include "body/example.hpp"
 
 using namespace springfit;
 

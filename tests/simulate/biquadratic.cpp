@@ -106,7 +106,7 @@ TEST_CASE_TEMPLATE("the stable step is below the true limit and not far below it
     for (const double stretch : {1., 1.3, 0.8}) {
         const Points<dim, double> x = test::moved<dim, double>(stretch * network.rest_positions, 0.03, 4);
         auto matrix = triangle_matrix(network, FreeNodes(network.n_nodes(), {}));
-        add_stiffness<dim, double>(network, x, Curvature::exact, matrix);
+        add_stiffness<dim, double>(network, x, HessianForm::exact, matrix);
         DenseMatrix<double> k = matrix.matrix();
         k = DenseMatrix<double>(k.selfadjointView<Eigen::Lower>());
         for (Index i = 0; i < network.n_nodes(); ++i) {

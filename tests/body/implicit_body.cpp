@@ -10,7 +10,7 @@
 #include <springfit/network/forces.hpp>
 #include <springfit/simulate/stable_step.hpp>
 
-#include "example.hpp"
+#include "body/example.hpp"
 
 using namespace springfit;
 
@@ -27,7 +27,7 @@ Points<Dim, Scalar> deformed(const SpringNetwork<Dim, Scalar>& network) {
 /// The assembled Hessian of the incremental potential, whole.
 template <int Dim, class Scalar>
 DenseMatrix<Scalar> assembled(const SpringNetwork<Dim, Scalar>& network, const Points<Dim, Scalar>& x, Scalar h,
-                              Curvature curvature) {
+                              HessianForm curvature) {
     auto matrix = spring_matrix(network, FreeNodes(network.n_nodes(), {}));
     matrix.set_zero();
     add_stiffness<Dim, Scalar>(network, x, curvature, matrix);
@@ -63,7 +63,7 @@ TEST_CASE_TEMPLATE("the product is that of the assembled Hessian, and the deriva
         body.write(x, Points<dim, Scalar>::Zero(dim, x.cols()));
         const Points<dim, Scalar> found = body.apply_hessian(d, h, exact);
         const auto matrix =
-            assembled<dim, Scalar>(network, x, h, exact ? Curvature::exact : Curvature::positive_semidefinite);
+            assembled<dim, Scalar>(network, x, h, exact ? HessianForm::exact : HessianForm::positive_semidefinite);
         const Values<Scalar> expected = matrix * d.reshaped();
         CHECK(test::relative_difference(found.reshaped(), expected) < test::rounding<Scalar>(200));
     }
@@ -93,7 +93,7 @@ TEST_CASE_TEMPLATE("one iteration is Newton's step from the predicted positions"
     const Points<dim, Scalar> y = thrown.initial_positions + h * thrown.initial_velocities;
     Points<dim, Scalar> forces = loads;
     add_elastic_forces<dim, Scalar>(network, y, forces);
-    const auto matrix = assembled<dim, Scalar>(network, y, h, Curvature::positive_semidefinite);
+    const auto matrix = assembled<dim, Scalar>(network, y, h, HessianForm::positive_semidefinite);
     const Values<Scalar> change = matrix.ldlt().solve(Values<Scalar>(forces.reshaped()));
 
     ImplicitBody<dim, Scalar> body(network, {.linear_tolerance = Scalar(1e-6)});

@@ -5,7 +5,7 @@
 #include <springfit/network/forces.hpp>
 #include <springfit/solve/corotated_solver.hpp>
 
-#include "../step/example.hpp"
+#include "../body/example.hpp"
 
 using namespace springfit;
 
@@ -25,7 +25,7 @@ template <int Dim, class Scalar>
 SparseMatrix<Scalar> stiffness(const SpringNetwork<Dim, Scalar>& network, const FreeNodes& free,
                                const Points<Dim, Scalar>& x, Scalar diagonal = 0) {
     auto matrix = spring_matrix(network, free);
-    add_stiffness<Dim, Scalar>(network, x, Curvature::exact, matrix);
+    add_stiffness<Dim, Scalar>(network, x, HessianForm::exact, matrix);
     for (Index f = 0; f < free.n_free(); ++f) {
         matrix.add_diagonal(f, diagonal);
     }
@@ -39,8 +39,8 @@ TEST_CASE_TEMPLATE("the factor of a turned body is that of its stiffness", T, SP
     using Scalar = typename T::Scalar;
     const auto network = test::random_network_with_cells<dim, Scalar>(Scalar(0), Scalar(10), Scalar(30), 3);
     const FreeNodes free(network.n_nodes(), {0, 1, 2, 5});
-    TurnedFactor<dim, Scalar> at_rest(stiffness<dim, Scalar>(network, free, network.rest_positions), free,
-                                      network.springs, network.rest_positions);
+    CorotatedPreconditioner<dim, Scalar> at_rest(stiffness<dim, Scalar>(network, free, network.rest_positions), free,
+                                                 network.springs, network.rest_positions);
     REQUIRE(at_rest.is_usable());
     auto turned = at_rest; // shares the factor, not the rotations
     const Points<dim, Scalar> x = rotation<dim, Scalar>() * network.rest_positions;
@@ -69,8 +69,9 @@ TEST_CASE_TEMPLATE("a body that nothing holds, and one turned inside out", T, te
     const FreeNodes all(network.n_nodes(), {});
     const auto& rest = network.rest_positions;
     CHECK_FALSE(
-        TurnedFactor<dim, double>(stiffness<dim, double>(network, all, rest), all, network.springs, rest).is_usable());
-    CHECK_FALSE((TurnedFactor<dim, double>{}.is_usable()));
+        CorotatedPreconditioner<dim, double>(stiffness<dim, double>(network, all, rest), all, network.springs, rest)
+            .is_usable());
+    CHECK_FALSE((CorotatedPreconditioner<dim, double>{}.is_usable()));
     const FreeNodes none(network.n_nodes(), [&] {
         std::vector<int> nodes(static_cast<std::size_t>(network.n_nodes()));
         for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -78,10 +79,12 @@ TEST_CASE_TEMPLATE("a body that nothing holds, and one turned inside out", T, te
         }
         return nodes;
     }());
-    CHECK_FALSE(TurnedFactor<dim, double>(stiffness<dim, double>(network, none, rest), none, network.springs, rest)
-                    .is_usable());
+    CHECK_FALSE(
+        CorotatedPreconditioner<dim, double>(stiffness<dim, double>(network, none, rest), none, network.springs, rest)
+            .is_usable());
     const FreeNodes free(network.n_nodes(), {0, 1, 2, 5});
-    TurnedFactor<dim, double> factor(stiffness<dim, double>(network, free, rest), free, network.springs, rest);
+    CorotatedPreconditioner<dim, double> factor(stiffness<dim, double>(network, free, rest), free, network.springs,
+                                                rest);
     Points<dim, double> strange = rest;
     strange.row(0) *= dim == 3 ? -1 : 0; // no rotation, or nothing but a line
     factor.turn(strange);
@@ -101,7 +104,7 @@ TEST_CASE_TEMPLATE("the solver of turned bodies", T, test::Space<2, double>, tes
     const Points<dim, double> bent = rotation<dim, double>() * (1.2 * rest);
     const SparseMatrix<double> matrix = stiffness<dim, double>(network, free, bent);
     const Values<double> right = Values<double>::Random(dim * free.n_free());
-    TurnedSolver<dim, double> solver;
+    CorotatedSolver<dim, double> solver;
     Values<double> found;
     const auto residual = [&](const SparseMatrix<double>& a) {
         return (a.template selfadjointView<Eigen::Lower>() * found - right).norm() / right.norm();

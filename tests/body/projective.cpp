@@ -10,7 +10,7 @@
 #include <springfit/simulate/projective_euler.hpp>
 #include <springfit/simulate/stable_step.hpp>
 
-#include "example.hpp"
+#include "body/example.hpp"
 
 using namespace springfit;
 

@@ -3,7 +3,7 @@
 
 #include <springfit/simulate/static_solver.hpp>
 
-#include "example.hpp"
+#include "body/example.hpp"
 
 using namespace springfit;
 
@@ -141,7 +141,7 @@ TEST_CASE_TEMPLATE("cases that share a solver end where they end alone", T, SPRI
         for (const Scalar size : {Scalar(3), Scalar(-1)}) {
             const auto scenario = hanging<dim, Scalar>(size, held);
             Points<dim, Scalar> shared;
-            CHECK(statics.balance(scenario, 0, shared) == Status::converged);
+            CHECK(statics.solve_equilibrium(scenario, 0, shared) == Status::converged);
             const auto alone = equilibrium(network, scenario);
             CHECK(alone.status == Status::converged);
             CHECK(shared == alone.positions);
