@@ -58,7 +58,7 @@ endfunction()
 # Each unit takes at most 1.5 GB to compile: the mesher alone is two.
 function(springfit_add_compiled_cgal)
   set(sources)
-  foreach(header surface mesh_3 remove_slivers instances/tetrahedralize instances/triangulate instances/interpolation)
+  foreach(header surface_impl mesh_3 remove_slivers instances/tetrahedralize instances/triangulate instances/interpolation)
     get_filename_component(name ${header} NAME)
     set(source "${PROJECT_BINARY_DIR}/compiled_cgal/${name}.cpp")
     file(CONFIGURE OUTPUT "${source}" CONTENT "#include <springfit/cgal/detail/${header}.hpp>\n")
