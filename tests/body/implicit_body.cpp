@@ -11,6 +11,7 @@
 #include <springfit/simulate/stable_step.hpp>
 
 #include "body/example.hpp"
+#include "body/node_access.hpp"
 
 using namespace springfit;
 
@@ -199,6 +200,14 @@ TEST_CASE_TEMPLATE("an implicit step that is not finite leaves the body as it wa
     CHECK(body.step(Scalar(0.1)).status == Status::diverged);
     CHECK(body.position(1) == network.rest_positions.col(1));
     CHECK(body.velocity(1) == velocity);
+}
+
+TEST_CASE_TEMPLATE("nodes are set and read one by one", T, SPRINGFIT_TEST_SPACES) {
+    constexpr int dim = T::dimension;
+    using Scalar = typename T::Scalar;
+    const auto network = test::random_network_with_cells<dim, Scalar>(Scalar(0.01), -10, 100);
+    const ImplicitBody<dim, Scalar> body(network);
+    test::check_node_access(body, body, {0, 3}, stable_step(network) / 4);
 }
 
 TEST_CASE("options, sizes and steps of an implicit body out of range are refused") {

@@ -11,6 +11,7 @@
 #include <springfit/simulate/stable_step.hpp>
 
 #include "body/example.hpp"
+#include "body/node_access.hpp"
 
 using namespace springfit;
 
@@ -142,6 +143,14 @@ TEST_CASE_TEMPLATE("domains change neither the projective step nor its bits, and
     exact.read(x[0], v[0]);
     whole.read(x[1], v[1]);
     CHECK((x[0] - x[1]).norm() < Scalar(2e-3) * (x[0] - thrown.initial_positions).norm());
+}
+
+TEST_CASE_TEMPLATE("nodes are set and read one by one", T, SPRINGFIT_TEST_SPACES) {
+    constexpr int dim = T::dimension;
+    using Scalar = typename T::Scalar;
+    const auto network = test::random_network<dim, Scalar>(Scalar(0.01));
+    const ProjectiveBody<dim, Scalar> body(network);
+    test::check_node_access(body, body, {0, 3}, stable_step(network) / 4);
 }
 
 TEST_CASE("what the projective step cannot do is refused") {

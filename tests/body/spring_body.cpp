@@ -9,6 +9,7 @@
 #include <springfit/simulate/stable_step.hpp>
 
 #include "body/example.hpp"
+#include "body/node_access.hpp"
 
 using namespace springfit;
 
@@ -170,6 +171,14 @@ TEST_CASE_TEMPLATE("joined nodes are near each other in the locality order", T, 
                                            place[static_cast<std::size_t>(network.springs(1, e))]));
     }
     CHECK(widest < (dim == 2 ? 40 : 400)); // of 13 * 14 and 13^3 nodes
+}
+
+TEST_CASE_TEMPLATE("nodes are set and read one by one", T, SPRINGFIT_TEST_SPACES) {
+    constexpr int dim = T::dimension;
+    using Scalar = typename T::Scalar;
+    const auto network = test::random_network_with_cells<dim, Scalar>(Scalar(0.01), -10, 100);
+    const SpringBody<dim, Scalar> body(network);
+    test::check_node_access(body, body, {0, 3}, stable_step(network) / 4);
 }
 
 TEST_CASE("wrong sizes and numbers are refused") {

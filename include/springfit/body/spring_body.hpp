@@ -33,10 +33,18 @@ public:
 
     [[nodiscard]] Vector<Dim, Scalar> position(int node) const;
     [[nodiscard]] Vector<Dim, Scalar> velocity(int node) const;
+    /// One node, O(1): to grab it, to push it, to keep it off the ground. Node numbers are not checked.
+    void set_position(int node, const Vector<Dim, Scalar>& position);
     void set_velocity(int node, const Vector<Dim, Scalar>& velocity);
+    void set_external_force(int node, const Vector<Dim, Scalar>& force);
+    void add_external_force(int node, const Vector<Dim, Scalar>& force);
 
     /// Writes positions and velocities `[Dim x n_nodes]`, m and m/s.
     void read(Points<Dim, Scalar>& positions, Points<Dim, Scalar>& velocities) const;
+    /// Writes positions alone.
+    void read(Points<Dim, Scalar>& positions) const;
+    /// Writes the positions of these nodes `[Dim x nodes.size()]`, m, as of a surface.
+    void read(const std::vector<int>& nodes, Points<Dim, Scalar>& positions) const;
     /// Sets positions and velocities `[Dim x n_nodes]`, m and m/s.
     void write(const Points<Dim, Scalar>& positions, const Points<Dim, Scalar>& velocities);
     /// Forces on the nodes from now on `[Dim x n_nodes]`, N.

@@ -38,7 +38,14 @@ public:
 
     [[nodiscard]] Vector<Dim, Scalar> position(int node) const { return vector(m_positions[place(node)]); }
     [[nodiscard]] Vector<Dim, Scalar> velocity(int node) const { return vector(m_velocities[place(node)]); }
+    /// One node, O(1): to grab it, to push it, to keep it off the ground. Node numbers are not checked.
+    void set_position(int node, const Vector<Dim, Scalar>& position) { set(m_positions[place(node)], position); }
     void set_velocity(int node, const Vector<Dim, Scalar>& velocity) { set(m_velocities[place(node)], velocity); }
+    void set_external_force(int node, const Vector<Dim, Scalar>& force) { set(m_external[place(node)], force); }
+    void add_external_force(int node, const Vector<Dim, Scalar>& force) {
+        const std::size_t i = place(node);
+        set(m_external[i], vector(m_external[i]) + force);
+    }
 
     /// Writes positions and velocities `[Dim x n_nodes]`, m and m/s.
     void read(Points<Dim, Scalar>& positions, Points<Dim, Scalar>& velocities) const {
@@ -47,6 +54,22 @@ public:
         for (int node = 0; node < n_nodes(); ++node) {
             positions.col(node) = position(node);
             velocities.col(node) = velocity(node);
+        }
+    }
+
+    /// Writes positions alone.
+    void read(Points<Dim, Scalar>& positions) const {
+        positions.resize(Dim, n_nodes());
+        for (int node = 0; node < n_nodes(); ++node) {
+            positions.col(node) = position(node);
+        }
+    }
+
+    /// Writes the positions of these nodes `[Dim x nodes.size()]`, m, as of a surface.
+    void read(const std::vector<int>& nodes, Points<Dim, Scalar>& positions) const {
+        positions.resize(Dim, static_cast<Index>(nodes.size()));
+        for (std::size_t n = 0; n < nodes.size(); ++n) {
+            positions.col(static_cast<Index>(n)) = position(nodes[n]);
         }
     }
 

@@ -58,6 +58,33 @@ Vector<Dim, ScalarType> SpringBody<Dim, ScalarType>::velocity(int node) const {
 
 template <int Dim, std::floating_point ScalarType>
     requires SpatialDimension<Dim>
+void SpringBody<Dim, ScalarType>::set_position(int node, const Vector<Dim, Scalar>& position) {
+    Record& record = m_nodes[static_cast<std::size_t>(m_springs.number(node))];
+    for (int d = 0; d < Dim; ++d) {
+        record.lanes[d] = position(d);
+    }
+}
+
+template <int Dim, std::floating_point ScalarType>
+    requires SpatialDimension<Dim>
+void SpringBody<Dim, ScalarType>::set_external_force(int node, const Vector<Dim, Scalar>& force) {
+    Force& external = m_external[static_cast<std::size_t>(m_springs.number(node))];
+    for (int d = 0; d < Dim; ++d) {
+        external.lanes[d] = force(d);
+    }
+}
+
+template <int Dim, std::floating_point ScalarType>
+    requires SpatialDimension<Dim>
+void SpringBody<Dim, ScalarType>::add_external_force(int node, const Vector<Dim, Scalar>& force) {
+    Force& external = m_external[static_cast<std::size_t>(m_springs.number(node))];
+    for (int d = 0; d < Dim; ++d) {
+        external.lanes[d] += force(d);
+    }
+}
+
+template <int Dim, std::floating_point ScalarType>
+    requires SpatialDimension<Dim>
 void SpringBody<Dim, ScalarType>::set_velocity(int node, const Vector<Dim, Scalar>& velocity) {
     Record& record = m_nodes[static_cast<std::size_t>(m_springs.number(node))];
     for (int d = 0; d < Dim; ++d) {
@@ -77,6 +104,27 @@ void SpringBody<Dim, ScalarType>::read(Points<Dim, Scalar>& positions, Points<Di
             positions(d, node) = record.lanes[d];
             velocities(d, node) = record.lanes[Lanes::velocity + d];
         }
+    }
+}
+
+template <int Dim, std::floating_point ScalarType>
+    requires SpatialDimension<Dim>
+void SpringBody<Dim, ScalarType>::read(Points<Dim, Scalar>& positions) const {
+    positions.resize(Dim, n_nodes());
+    for (Index place = 0; place < n_nodes(); ++place) {
+        const int node = m_springs.order()[static_cast<std::size_t>(place)];
+        for (int d = 0; d < Dim; ++d) {
+            positions(d, node) = m_nodes[static_cast<std::size_t>(place)].lanes[d];
+        }
+    }
+}
+
+template <int Dim, std::floating_point ScalarType>
+    requires SpatialDimension<Dim>
+void SpringBody<Dim, ScalarType>::read(const std::vector<int>& nodes, Points<Dim, Scalar>& positions) const {
+    positions.resize(Dim, static_cast<Index>(nodes.size()));
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+        positions.col(static_cast<Index>(n)) = position(nodes[n]);
     }
 }
 

@@ -44,10 +44,12 @@ private:
     static constexpr int max_iterations = 1000;
 
     [[nodiscard]] double residual(const Values<double>& x, const Values<double>& gradient) const {
-        const Values<double> moved = (x - gradient)
-                                         .template cwiseMax<Eigen::PropagateNaN>(m_problem.lower)
-                                         .template cwiseMin<Eigen::PropagateNaN>(m_problem.upper);
-        return max_norm(x - moved);
+        double largest = 0;
+        for (Index p = 0; p < x.size(); ++p) {
+            const double moved = std::clamp(x(p) - gradient(p), m_problem.lower(p), m_problem.upper(p));
+            largest = maximum(largest, std::abs(x(p) - moved));
+        }
+        return largest;
     }
 
     /// -1 on the lower bound, 1 on the upper, 0 free.
