@@ -64,7 +64,7 @@ private:
     Status attempt(State<Dim, Scalar>& state, const Scenario<Dim, Scalar>& scenario, Scalar dt);
     [[nodiscard]] Nodes damped(const Nodes& velocities) const;
     void take_damping(const Nodes& positions);
-    void balance(State<Dim, Scalar>& state, const Scenario<Dim, Scalar>& scenario);
+    void update_accelerations(State<Dim, Scalar>& state, const Scenario<Dim, Scalar>& scenario);
 
     std::shared_ptr<const ElasticBody<Dim, Scalar>> m_body;
     DynamicsOptions<Scalar> m_options;

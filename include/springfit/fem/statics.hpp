@@ -67,7 +67,7 @@ public:
                                                          const Nodes& start = {});
 
     /// The same for the concept StaticSolver: `positions` `[Dim x n_nodes]` are what `equilibrium` ends with.
-    Status balance(const Scenario<Dim, Scalar>& scenario, Scalar time, Nodes& positions);
+    Status solve_equilibrium(const Scenario<Dim, Scalar>& scenario, Scalar time, Nodes& positions);
 
     /// The answer to small loads and clamp displacements, K u = f_ext with K at the rest positions: displacement
     /// `[Dim x n_nodes]`, m, to a relative residual of `tolerance` of the options. Status `failed` where the clamps do

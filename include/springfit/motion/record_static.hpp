@@ -13,8 +13,9 @@ namespace springfit {
 
 /// Finds where a body comes to rest under one load case after another; what it learns of one it may use for the next.
 ///
-/// `balance` ends with the equilibrium under the loads and clamps at a time, `linear_response` with the displacement
-/// that small loads would make, K u = f_ext at the rest positions; both return `converged` or say why they could not.
+/// `solve_equilibrium` ends with the equilibrium under the loads and clamps at a time, `linear_response` with the
+/// displacement that small loads would make, K u = f_ext at the rest positions; both return `converged` or say why they
+/// could not.
 template <class S>
 concept StaticSolver = requires(S solver, const Scenario<S::dimension, typename S::Scalar>& scenario,
                                 typename S::Scalar time, Points<S::dimension, typename S::Scalar>& nodes) {

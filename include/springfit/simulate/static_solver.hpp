@@ -24,7 +24,7 @@ public:
 
     /// The positions `[Dim x n_nodes]` that `equilibrium` ends with, whether it is stable or not.
     /// What the clamps determine is kept while the same nodes are clamped.
-    Status balance(const Scenario<Dim, Scalar>& scenario, Scalar time, Points<Dim, Scalar>& positions);
+    Status solve_equilibrium(const Scenario<Dim, Scalar>& scenario, Scalar time, Points<Dim, Scalar>& positions);
 
     /// K u = f with K at the rest positions and f the loads and the springs' own forces there: displacement
     /// `[Dim x n_nodes]`, m. The factorisation is kept while the same nodes are clamped. A flat network in space

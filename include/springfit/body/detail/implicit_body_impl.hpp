@@ -126,7 +126,7 @@ auto ImplicitBody<Dim, ScalarType, LinearScalar>::linearise(Scalar h, bool exact
         add_cells(domain, target, exact);
         m_operator.invert(domain.begin, domain.end, this->m_is_free);
         this->m_found[d] = {};
-        this->balance(domain, h, m_operator.residual(), m_operator.solution(), this->m_found[d]);
+        this->set_residual(domain, h, m_operator.residual(), m_operator.solution(), this->m_found[d]);
     });
     return this->found();
 }

@@ -139,8 +139,8 @@ protected:
     /// Writes minus the gradient, f - m/h^2 (x - x_n - h v_n), of the nodes of a domain from their forces; 0 where
     /// clamped. `direction` is the last one.
     template <std::floating_point Real>
-    void balance(const typename Packed::Domain& domain, Scalar h, std::vector<Four<Real>>& target,
-                 const std::vector<Four<Real>>& direction, Found& found) const;
+    void set_residual(const typename Packed::Domain& domain, Scalar h, std::vector<Four<Real>>& target,
+                      const std::vector<Four<Real>>& direction, Found& found) const;
 
     bool m_is_damped;
     std::vector<Four<Scalar>> m_start;          ///< positions at the start of the step
@@ -214,9 +214,9 @@ void IncrementalPotential<Dim, ScalarType>::for_springs(const std::vector<Block>
 template <int Dim, std::floating_point ScalarType>
     requires SpatialDimension<Dim>
 template <std::floating_point Real>
-void IncrementalPotential<Dim, ScalarType>::balance(const typename Packed::Domain& domain, Scalar h,
-                                                    std::vector<Four<Real>>& target,
-                                                    const std::vector<Four<Real>>& direction, Found& found) const {
+void IncrementalPotential<Dim, ScalarType>::set_residual(const typename Packed::Domain& domain, Scalar h,
+                                                         std::vector<Four<Real>>& target,
+                                                         const std::vector<Four<Real>>& direction, Found& found) const {
     using RealLanes = Simd<Real, 4>;
     Lanes gradients = {}, forces = {}, positions = {}, zero = {};
     const auto raise = [](Lanes& largest, const Lanes& values) {

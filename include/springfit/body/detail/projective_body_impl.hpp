@@ -93,7 +93,7 @@ auto ProjectiveBody<Dim, Scalar>::evaluate(Scalar h) -> Found {
             this->template for_springs<false>(domain.border, h, 0, own);
         }
         this->m_found[d] = {};
-        this->balance(domain, h, m_residual, m_direction, this->m_found[d]);
+        this->set_residual(domain, h, m_residual, m_direction, this->m_found[d]);
     });
     return this->found();
 }

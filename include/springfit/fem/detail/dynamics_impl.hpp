@@ -115,7 +115,7 @@ auto Dynamics<Dim, S>::damped(const Nodes& velocities) const -> Nodes {
 
 /// Sets the accelerations of the free nodes from the balance of forces at the state itself.
 template <int Dim, std::floating_point S>
-void Dynamics<Dim, S>::balance(State<Dim, S>& state, const Scenario<Dim, S>& scenario) {
+void Dynamics<Dim, S>::update_accelerations(State<Dim, S>& state, const Scenario<Dim, S>& scenario) {
     take_damping(state.positions);
     const Nodes forces = external_forces<Dim, S>(scenario, m_body->masses(), state.time) -
                          m_body->internal_forces(state.positions) - damped(state.velocities);
@@ -132,7 +132,7 @@ auto Dynamics<Dim, S>::start(const Scenario<Dim, S>& scenario) -> State<Dim, S> 
     state.positions = initial_positions<Dim, S>(scenario, m_body->rest_positions());
     state.velocities = initial_velocities<Dim, S>(scenario, m_body->rest_positions());
     state.accelerations.setZero(Dim, state.positions.cols());
-    balance(state, scenario);
+    update_accelerations(state, scenario);
     m_last = state;
     return state;
 }
@@ -229,7 +229,7 @@ Status Dynamics<Dim, S>::attempt(State<Dim, S>& state, const Scenario<Dim, S>& s
     for (int node : m_free.nodes()) {
         m_last.accelerations.col(node) = problem.c0 * d.col(node);
     }
-    balance(state, scenario);
+    update_accelerations(state, scenario);
     return Status::converged;
 }
 
