@@ -77,7 +77,7 @@ struct Given {
 
     [[nodiscard]] const Points<2, double>& rest_positions() const { return rest; }
     [[nodiscard]] const Values<double>& masses() const { return node_masses; }
-    Status balance(const Scenario<2, double>&, double, Points<2, double>& positions) const {
+    Status solve_equilibrium(const Scenario<2, double>&, double, Points<2, double>& positions) const {
         positions = found;
         return Status::converged;
     }
