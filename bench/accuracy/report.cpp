@@ -242,13 +242,13 @@ Report::Report(std::filesystem::path folder, std::string command, unsigned seed,
 
 void Report::begin(const std::string& id, const std::string& title, const std::string& text) {
     m_parts.push_back({id, title, text});
-    m_part_start = Clock::now();
+    m_of_part = {};
     std::cout << "\n" << title << std::endl;
 }
 
 void Report::end_part() {
     Part& part = m_parts.back();
-    part.seconds = std::chrono::duration<double>(Clock::now() - m_part_start).count();
+    part.seconds = m_of_part.seconds();
     std::cout << "  " << std::lround(part.seconds) << " s" << std::endl;
     write_part(part);
     write_summary();

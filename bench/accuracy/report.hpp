@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <chrono>
 #include <filesystem>
 #include <limits>
 #include <string>
 #include <vector>
+
+#include <springfit/core/stopwatch.hpp>
 
 namespace study {
 
@@ -85,8 +86,6 @@ public:
     [[nodiscard]] bool has_failed() const { return m_has_failed; }
 
 private:
-    using Clock = std::chrono::steady_clock;
-
     struct Part {
         std::string id, title, text;
         std::vector<Row> rows{};
@@ -113,7 +112,7 @@ private:
     bool m_is_quick;
     bool m_has_failed = false;
     std::string m_state = "in progress";
-    Clock::time_point m_part_start{};
+    springfit::Stopwatch m_of_part;
     std::vector<Part> m_parts;
     std::vector<Bar> m_bars;
 };

@@ -21,7 +21,7 @@ TrajectoryOptions trajectory_options(const FitSettings& fit, const Settings& set
 template <int Dim>
 MotionFit<Dim> match_motion(const SpringNetwork<Dim, double>& prior, const std::vector<Motion<Dim, double>>& training,
                             const FitSettings& fit, const Settings& settings) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     MotionFit<Dim> result{prior, {}, 0};
     const TrajectoryProblem<Dim> problem(prior, training, trajectory_options(fit, settings));
     GaussNewtonOptions options;
@@ -33,7 +33,7 @@ MotionFit<Dim> match_motion(const SpringNetwork<Dim, double>& prior, const std::
     if (usable(result.report.status)) {
         apply(problem, result.report, result.network);
     }
-    result.seconds = seconds_since(start);
+    result.seconds = watch.seconds();
     return result;
 }
 
@@ -78,16 +78,16 @@ template <int Dim>
 std::vector<AccelerationFit<Dim>> acceleration_fits(const SpringNetwork<Dim, double>& prior,
                                                     const std::vector<Motion<Dim, double>>& training,
                                                     const Settings& settings, int max_sweeps) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     const AccelerationProblem problem = acceleration_problem<Dim, double>(prior, training, {}, settings.execution);
-    const double assembly = seconds_since(start);
+    const double assembly = watch.seconds();
     std::vector<AccelerationFit<Dim>> fits;
     const auto add = [&](const char* name, const auto& solve) {
-        const auto begin = std::chrono::steady_clock::now();
+        const Stopwatch solving;
         const std::optional<AccelerationReport> fit = solve();
         stop_if_interrupted();
         if (fit) {
-            fits.push_back({name, prior, fit->objective, assembly + seconds_since(begin)});
+            fits.push_back({name, prior, fit->objective, assembly + solving.seconds()});
             apply(problem, *fit, fits.back().network);
         }
     };

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <chrono>
-
 #include <springfit/cases/load_cases.hpp>
 #include <springfit/cases/strain.hpp>
 #include <springfit/closed_form/all.hpp>
+#include <springfit/core/stopwatch.hpp>
 #include <springfit/fit/trajectory/gauss_newton.hpp>
 #include <springfit/motion/record_static.hpp>
 
@@ -111,10 +110,6 @@ struct FitSettings {
     int steps_per_frame = 1;          ///< of the integrator
     double damping_per_stiffness = 0; ///< s; above 0, damping follows stiffness
 };
-
-[[nodiscard]] inline double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// A network that matching of motion found, and how.
 template <int Dim>

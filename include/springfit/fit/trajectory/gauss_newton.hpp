@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <chrono>
 #include <utility>
 
 #include <Eigen/Cholesky>
 
 #include <springfit/core/maximum.hpp>
 #include <springfit/core/progress.hpp>
+#include <springfit/core/stopwatch.hpp>
 #include <springfit/fit/trajectory/problem.hpp>
 
 namespace springfit {
@@ -207,7 +207,7 @@ template <int Dim>
     require(options.max_step > 0, "max_step", "a positive value", options.max_step);
     require(options.probes >= 1, "probes", "at least one", options.probes);
 
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     const auto& lower = problem.parameters().lower();
     const auto& upper = problem.parameters().upper();
     const double lambda = problem.options().prior_weight;
@@ -311,7 +311,7 @@ template <int Dim>
     report.objective = point->value();
     report.misfit = point->misfit();
     detail::set_curvature((diagonal.array() - lambda).cwiseMax(0.), lambda, report);
-    report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    report.seconds = watch.seconds();
     return report;
 }
 

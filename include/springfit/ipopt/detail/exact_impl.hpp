@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <chrono>
-
+#include <springfit/core/stopwatch.hpp>
 #include <springfit/ipopt/detail/application.hpp>
 #include <springfit/ipopt/detail/box_program.hpp>
 #include <springfit/ipopt/detail/polish.hpp>
@@ -14,7 +13,7 @@ inline AccelerationReport exact(const AccelerationProblem& problem, const ExactO
     require(options.initial.size() == 0 || options.initial.size() == problem.n_unknowns(), "initial",
             text(problem.n_unknowns(), " values, one per unknown"), options.initial.size());
     require(options.initial.allFinite(), "initial", "finite values", "a value that is not finite");
-    const auto begin = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     AccelerationReport report;
     report.theta = options.initial.size() > 0 ? options.initial.cwiseMax(problem.lower).cwiseMin(problem.upper).eval()
                                               : problem.prior;
@@ -60,7 +59,7 @@ inline AccelerationReport exact(const AccelerationProblem& problem, const ExactO
     if (report.status == Status::converged || report.status == Status::stalled) {
         report.status = report.kkt_residual <= options.tolerance ? Status::converged : Status::stalled;
     }
-    report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    report.seconds = watch.seconds();
     return report;
 }
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <chrono>
-
+#include <springfit/core/stopwatch.hpp>
 #include <springfit/ipopt/detail/application.hpp>
 #include <springfit/ipopt/detail/box_program.hpp>
 #include <springfit/ipopt/trajectory.hpp>
@@ -107,7 +106,7 @@ TrajectoryReport trajectory(const TrajectoryProblem<Dim>& problem, const Traject
     require(options.memory >= 1, "memory", "at least one", options.memory);
     require(options.max_step > 0, "max_step", "a positive value", options.max_step);
     require(options.probes >= 1, "probes", "at least one", options.probes);
-    const auto begin = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     const auto application = detail::make_application(options, {{"hessian_approximation", "limited-memory"},
                                                                 {"limited_memory_max_history", options.memory},
                                                                 {"limited_memory_initialization", "scalar2"},
@@ -153,7 +152,7 @@ TrajectoryReport trajectory(const TrajectoryProblem<Dim>& problem, const Traject
     report.gradient_max = springfit::detail::largest_projected(
         scaled.best_gradient(), springfit::detail::at_active_bound(report.theta, scaled.best_gradient(), lower, upper));
     springfit::detail::set_curvature(best.curvature(options.probes), lambda, report);
-    report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    report.seconds = watch.seconds();
     return report;
 }
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <chrono>
-
+#include <springfit/core/stopwatch.hpp>
 #include <springfit/search/problem.hpp>
 #include <springfit/search/report.hpp>
 
@@ -47,8 +46,8 @@ public:
     double fitness(const pagmo::vector_double& x) {
         const double fraction =
             std::max(static_cast<double>(m_report.fit.evaluations - m_before) / m_limits.evaluations,
-                     elapsed() / m_limits.seconds);
-        if (elapsed() >= m_limits.seconds) {
+                     m_watch.seconds() / m_limits.seconds);
+        if (m_watch.seconds() >= m_limits.seconds) {
             throw SearchEnd();
         }
         if (!go_on(m_progress, m_stage, std::min(fraction, 1.))) {
@@ -78,20 +77,16 @@ public:
                 springfit::detail::at_active_bound(fit.theta, m_gradient, parameters.lower(), parameters.upper()));
             springfit::detail::set_curvature(m_best->curvature(16), m_match.problem().options().prior_weight, fit);
         }
-        fit.seconds = elapsed();
+        fit.seconds = m_watch.seconds();
         return std::move(m_report);
     }
 
 private:
-    [[nodiscard]] double elapsed() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - m_begin).count();
-    }
-
     void end_iteration() {
         m_in_iteration = 0;
         ++m_report.fit.iterations;
         m_report.fit.history.push_back(m_best->value());
-        m_report.seconds.push_back(elapsed());
+        m_report.seconds.push_back(m_watch.seconds());
     }
 
     /// A point that would be the best must have a gradient: an equilibrium without one is unstable.
@@ -114,7 +109,7 @@ private:
     SearchLimits m_limits;
     const ProgressCallback& m_progress;
     std::string_view m_stage;
-    std::chrono::steady_clock::time_point m_begin = std::chrono::steady_clock::now();
+    Stopwatch m_watch;
     std::unique_ptr<TrajectoryPoint<Dim>> m_best; ///< of infinite value until one could be simulated
     std::unique_ptr<TrajectoryPoint<Dim>> m_trial;
     Values<double> m_gradient; ///< at the best

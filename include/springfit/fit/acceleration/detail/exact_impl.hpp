@@ -250,7 +250,7 @@ AccelerationReport exact(const Problem& problem, const ExactOptions& options) {
     require(options.initial.size() == 0 || options.initial.size() == problem.n_unknowns(), "initial",
             text(problem.n_unknowns(), " values, one per unknown"), options.initial.size());
     require(options.initial.allFinite(), "initial", "finite values", "a value that is not finite");
-    const detail::Stopwatch watch;
+    const Stopwatch watch;
     AccelerationReport report;
     const typename Problem::Unknowns start =
         options.initial.size() > 0 ? options.initial.cwiseMax(problem.lower).cwiseMin(problem.upper).eval()

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <chrono>
-
 #include <springfit/core/execution.hpp>
+#include <springfit/core/stopwatch.hpp>
 #include <springfit/fit/acceleration/problem.hpp>
 #include <springfit/solve/bounded_least_squares.hpp>
 
@@ -96,17 +95,6 @@ private:
     DenseMatrix<double> m_hessian, m_block, m_inverse;
     std::vector<Index> m_moving;
     BoundedLeastSquares m_solver;
-};
-
-/// Seconds since its construction.
-class Stopwatch {
-public:
-    [[nodiscard]] double seconds() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - m_start).count();
-    }
-
-private:
-    std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
 };
 
 template <class Problem>

@@ -8,7 +8,7 @@ namespace springfit {
 
 template <std::same_as<AccelerationProblem> Problem>
 AccelerationReport one_pass(const Problem& problem, const OnePassOptions& options) {
-    const detail::Stopwatch watch;
+    const Stopwatch watch;
     AccelerationReport report;
     report.theta = detail::one_pass_values(problem, options.execution);
     report.objective_start = problem.objective.value(problem.prior);

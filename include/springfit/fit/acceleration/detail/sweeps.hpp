@@ -213,7 +213,7 @@ template <std::same_as<AccelerationProblem> Problem>
 AccelerationReport dominant_term(const Problem& problem, const DominantTermOptions& options) {
     require(options.max_sweeps >= 0, "max_sweeps", "a number not below 0", options.max_sweeps);
     require(options.tolerance >= 0, "tolerance", "a value not below 0", options.tolerance);
-    const detail::Stopwatch watch;
+    const Stopwatch watch;
     AccelerationReport report;
     report.theta = detail::sweep_start(problem, options);
     report.objective_start = problem.objective.value(report.theta);
