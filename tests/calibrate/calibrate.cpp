@@ -186,7 +186,7 @@ TEST_CASE("what cannot be used is refused") {
     CHECK_THROWS_WITH_AS((void)calibrate(without, cases), doctest::Contains("stiffness to start from"),
                          InvalidArgument);
     CHECK_THROWS_AS((void)calibrate(std::vector<NamedNetwork<2>>{}, cases), InvalidArgument);
-    CHECK_THROWS_AS((void)calibrate(truth, RecordedCases<2, double>{}), InvalidArgument);
+    CHECK_THROWS_AS((void)(calibrate(truth, RecordedCases<2, double>{})), InvalidArgument);
     const auto other = springs_along_edges(triangle_grid<double>({2, 2}, {1., 1.}));
     CHECK_THROWS_AS((void)calibrate(other, cases), InvalidArgument);
     CalibrateOptions options;

@@ -4,7 +4,7 @@
 #include <springfit/cases/clamp_sets.hpp>
 #include <springfit/mesh/structured.hpp>
 
-#include "bodies.hpp"
+#include "specimens.hpp"
 
 using namespace springfit;
 

@@ -5,7 +5,7 @@
 
 #include <springfit/cases/load_cases.hpp>
 
-#include "bodies.hpp"
+#include "specimens.hpp"
 
 using namespace springfit;
 

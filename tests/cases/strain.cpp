@@ -7,7 +7,7 @@
 #include <springfit/network/builders.hpp>
 #include <springfit/simulate/static_solver.hpp>
 
-#include "bodies.hpp"
+#include "specimens.hpp"
 
 using namespace springfit;
 

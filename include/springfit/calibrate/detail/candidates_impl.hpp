@@ -46,7 +46,8 @@ public:
             m_result.all.push_back(std::move(candidate));
         }
         const Method method = m_options.method;
-        if (matches_motion(method)) {
+        // Whoever cut the recording short does not wait for the long fit.
+        if (method == Method::trajectory || (matches_motion(method) && !m_cases.interrupted)) {
             match_motion();
         }
         if (method != Method::closed_form && method != Method::trajectory && !m_result.interrupted) {

@@ -39,7 +39,14 @@ public:
 
     CaseRecording(const CaseRecorder<Dim, Scalar>& reference, const Specimen<Dim, Scalar>& specimen,
                   const RecordCasesOptions<Dim, Scalar>& options)
-        : m_reference(reference), m_specimen(specimen), m_options(options) {}
+        : m_reference(reference), m_specimen(specimen), m_options(options) {
+        Scenario<Dim, Scalar> held;
+        held.clamps = specimen.clamps;
+        const std::vector<int> nodes = clamped_nodes(held, specimen.n_nodes());
+        std::erase_if(m_specimen.surface, [&](int node) { // a hand does not reach where the body is held
+            return std::binary_search(nodes.begin(), nodes.end(), node);
+        });
+    }
 
     [[nodiscard]] RecordedCases<Dim, Scalar> record() {
         record_motions();
@@ -223,7 +230,7 @@ private:
     }
 
     const CaseRecorder<Dim, Scalar>& m_reference;
-    const Specimen<Dim, Scalar>& m_specimen;
+    Specimen<Dim, Scalar> m_specimen;
     const RecordCasesOptions<Dim, Scalar>& m_options;
     RecordedCases<Dim, Scalar> m_result;
 };
