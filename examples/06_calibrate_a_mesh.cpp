@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // From a mesh and a material to judged springs in one call. With a mesh file and a folder it does what
-// `springfit fit MESH --young 5e4 --poisson 0.3 --density 1000 --out FOLDER` does.
+// `springfit fit MESH --young 5e4 --poisson 0.3 --density 1000 --strain 0.01 --deformation 0.01 --out FOLDER` does.
 
 #include <cstdio>
 
@@ -11,9 +11,10 @@
 int main(int argc, char** argv) {
     using namespace springfit;
     const auto mesh = argc > 1 ? io::read_mesh(argv[1]).as_mesh<3, double, Tet4>()
-                               : tetrahedron_grid<double>({2, 4, 2}, {0.1, 0.2, 0.1}); // m
-    const auto result = calibrate(mesh, fem::NeoHookean{.young = 5e4, .poisson = 0.3},
-                                  BodyOptions<3>{.density = 1000, .clamped = side_nodes(mesh.nodes, {.axis = 1})});
+                               : tetrahedron_grid<double>({3, 6, 3}, {0.1, 0.2, 0.1}); // m
+    BodyOptions<3> body{.density = 1000, .clamped = side_nodes(mesh.nodes, {.axis = 1})};
+    body.record.strain = body.record.deformation = 0.01; // small, where springs alone do well
+    const auto result = calibrate(mesh, fem::NeoHookean{.young = 5e4, .poisson = 0.3}, body);
 
     for (const auto& candidate : result.candidates) {
         std::printf("%-14s %.4f\n", candidate.name.c_str(), candidate.held_out.error);

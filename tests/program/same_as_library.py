@@ -44,13 +44,13 @@ def box(n, size):
     return numpy.array(points), numpy.array(tets)
 
 
-points, tets = box((2, 3, 2), 0.1)
+points, tets = box((3, 6, 3), 0.1)
 mesh = folder / "box.msh"
 bodies.write_gmsh_tets(mesh, points, tets)
 for name in ("library", "program"):
     (folder / name).mkdir()
 run(MESH_EXAMPLE, mesh, folder / "library")
-run(PROGRAM, "fit", mesh, *MATERIAL, "--out", folder / "program")
+run(PROGRAM, "fit", mesh, *MATERIAL, "--strain", "0.01", "--deformation", "0.01", "--out", folder / "program")
 assert model_in(folder / "library") == model_in(folder / "program")
 report = json.load(open(folder / "program" / "report.json"))
 assert report["detail"]["verdict"] == "good" and report["detail"]["chosen_by"] == "least_held_out_error"

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
+#include <memory>
+#include <optional>
+
 #include <springfit/cases/case_recorder.hpp>
 #include <springfit/fem/dynamics.hpp>
 #include <springfit/fem/statics.hpp>

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
+#include <optional>
+
 #include <springfit/cases/case_recorder.hpp>
 #include <springfit/cases/case_set.hpp>
 #include <springfit/cases/strain.hpp>
