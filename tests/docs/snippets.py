@@ -10,48 +10,68 @@ whole program; prints the names of what it wrote. A comment before a snippet say
     <!-- snippet: continues -->             it goes on where the snippet before it ended
     <!-- snippet: declaration -->           it is declarations, at namespace scope
     <!-- snippet: not run: the reason -->   it is compiled, but not run
+
+and one right behind it what must be true then:
+
+    <!-- check: result.verdict == Verdict::good -->
 """
 
+import json
 import pathlib
 import re
 import sys
 
-SNIPPET = re.compile(r"(?:<!-- snippet: (?P<how>.*?) -->\n)?```cpp\n(?P<code>.*?)^```$", re.DOTALL | re.MULTILINE)
-INCLUDE = re.compile(r"#include .*")
-KNOWN = re.compile(r"|prelude=\w+|continues|declaration|not run: .+")
+SNIPPET = re.compile(
+    r"(?:<!-- snippet: (?P<how>[^\n]*) -->\n)?```cpp\n(?P<code>.*?)^```\n(?:<!-- check: (?P<check>[^\n]*) -->\n)?",
+    re.DOTALL | re.MULTILINE,
+)
+INCLUDE = re.compile(r"^#include .*", re.MULTILINE)
+KNOWN = re.compile(r"prelude=\w+|continues|declaration|not run: .+")
 
 
 class Page:
     def __init__(self, path, preludes):
-        self.path, self.preludes = path, preludes
-        self.includes, self.declarations, self.functions, self.run = {}, [], [], []
-        self.programs = {}
+        self.path = path
+        self.preludes = preludes
+        self.includes = {}  # as an ordered set
+        self.declarations = []
+        self.functions = {}  # by line: the parts of a body
+        self.run = []  # their lines
+        self.programs = {}  # by line
         text = path.read_text()
-        for match in SNIPPET.finditer(text):
-            self.add(match["how"] or "", match["code"], text.count("\n", 0, match.start("code")) + 1)
-        if text.count("```cpp") != len(SNIPPET.findall(text)):
-            sys.exit(f"{path}: a snippet that does not begin or end as it should")
+        found = list(SNIPPET.finditer(text))
+        for match in found:
+            self.add(text.count("\n", 0, match.start("code")) + 1, **match.groupdict())
+        for mark, n in (
+            ("```cpp", len(found)),
+            ("<!-- snippet:", sum(match["how"] is not None for match in found)),
+            ("<!-- check:", sum(match["check"] is not None for match in found)),
+        ):
+            if text.count(mark) != n:
+                sys.exit(f"{path}: {mark} where it means nothing")
 
-    def add(self, how, code, line):
-        if not KNOWN.fullmatch(how):
-            sys.exit(f"{self.path}:{line - 2}: what does '{how}' mean?")
+    def add(self, line, how, code, check):
+        if how and not KNOWN.fullmatch(how):
+            sys.exit(f"{self.path}:{line}: what does '{how}' mean?")
         if "int main(" in code:
             self.programs[line] = f'#line {line} "{self.path}"\n{code}'
             return
         code = self.without_includes(code, line, self.path)
+        if check:
+            code += f"if (!({check})) {{\n    throw std::runtime_error({json.dumps(check)});\n}}\n"
         if how == "declaration":
             self.declarations.append(code)
         elif how == "continues":
             if not self.functions:
                 sys.exit(f"{self.path}:{line}: there is nothing to go on from")
-            self.functions[-1][1].append(code)
+            self.functions[next(reversed(self.functions))].append(code)
         else:
             body = [code]
-            if how.startswith("prelude="):
+            if how and how.startswith("prelude="):
                 prelude = self.preludes / (how.removeprefix("prelude=") + ".ipp")
                 body.insert(0, self.without_includes(prelude.read_text(), 1, prelude))
-            self.functions.append((line, body))
-            if not how.startswith("not run"):
+            self.functions[line] = body
+            if not (how and how.startswith("not run")):
                 self.run.append(line)
 
     def without_includes(self, code, line, file):
@@ -60,12 +80,13 @@ class Page:
         return f'#line {line} "{file}"\n' + INCLUDE.sub("", code)
 
     def source(self):
-        parts = ["#include <cstdio>", "#include <exception>", *self.includes, ""]
+        parts = ["#include <cstdio>", "#include <exception>", "#include <stdexcept>", *self.includes, ""]
         parts += [f"namespace {{\n{code}}}\n" for code in self.declarations]
-        parts += [f"static void line_{line}() {{\n{''.join(body)}}}\n" for line, body in self.functions]
-        parts += ["int main() {", "    const char* at = \"\";", "    try {"]
+        parts += [f"void line_{line}() {{\n{''.join(body)}}}\n" for line, body in self.functions.items()]
+        parts += ["int main() {", '    const char* at = "";', "    try {"]
         for line in self.run:
-            parts += [f'        at = "{self.path.name}:{line}";', f'        std::printf("%s\\n", at);', f"        line_{line}();"]
+            at = f"{self.path.name}:{line}"
+            parts += [f'        std::puts(at = "{at}");', f"        line_{line}();"]
         parts += ["    } catch (const std::exception& error) {", '        std::fprintf(stderr, "%s: %s\\n", at, error.what());']
         parts += ["        return 1;", "    }", "}", ""]
         return "\n".join(parts)

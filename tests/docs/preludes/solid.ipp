@@ -7,5 +7,3 @@ const fem::Model model{mesh, fem::NeoHookean{.young = 5e4, .poisson = 0.3}, 1000
 Scenario<3, double> scenario;
 scenario.clamps = {{side_nodes(mesh.nodes, {.axis = 1}), {}}};
 scenario.gravity = {{{0., 0., -1.}, {}}};
-const int i = 7;
-const Vector<3, double> point{0.1, 0.2, 0.15};

@@ -1,5 +1,10 @@
 // A motion of a fine mesh, and a coarser one.
-#include <springfit/springfit.hpp>
+#include <springfit/cases/clamp_sets.hpp>
+#include <springfit/mesh/structured.hpp>
+#include <springfit/motion/record.hpp>
+#include <springfit/motion/transfer.hpp>
+#include <springfit/network/builders.hpp>
+#include <springfit/simulate/symplectic_euler.hpp>
 using namespace springfit;
 const auto fine = tetrahedron_grid<double>({4, 4, 4}, {0.2, 0.2, 0.2});
 const auto coarse = tetrahedron_grid<double>({2, 2, 2}, {0.2, 0.2, 0.2});
