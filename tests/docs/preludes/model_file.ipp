@@ -1,6 +1,6 @@
 // The page's model.json, as the page before leaves it: a small box that is held at the lowest y.
-#include <springfit/closed_form/cauchy_split.hpp>
 #include <springfit/cases/clamp_sets.hpp>
+#include <springfit/closed_form/cauchy_split.hpp>
 #include <springfit/io/model_json.hpp>
 #include <springfit/mesh/structured.hpp>
 #include <springfit/network/builders.hpp>
