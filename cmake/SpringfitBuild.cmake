@@ -5,8 +5,7 @@ if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
 endif()
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
 
-# As many compilers at a time as there are processors, but no more than fit into memory: a unit of the program
-# takes up to 1.5 GB, one of the tests up to 2.2.
+# As many compilers at a time as there are processors, but no more than fit into memory: a unit takes up to 1.5 GB.
 # (Ninja alone would start two more than there are processors.)
 cmake_host_system_information(RESULT processors QUERY NUMBER_OF_LOGICAL_CORES)
 cmake_host_system_information(RESULT memory QUERY TOTAL_PHYSICAL_MEMORY) # MiB
@@ -19,11 +18,7 @@ if(EXISTS /sys/fs/cgroup/memory.max) # a container's share
     endif()
   endif()
 endif()
-set(unit 1500)
-if(SPRINGFIT_BUILD_TESTS)
-  set(unit 2200)
-endif()
-math(EXPR compilers "${memory} / ${unit}")
+math(EXPR compilers "${memory} / 1500")
 if(compilers GREATER processors)
   set(compilers ${processors})
 elseif(compilers LESS 1)
