@@ -1,4 +1,4 @@
-// refused: no matching function for call to [^ ]*acceleration_problem<2, double>
+// refused: Motion<2, double>.*Motion<3, double>
 #include <springfit/fit/acceleration/objective.hpp>
 
 using namespace springfit;
