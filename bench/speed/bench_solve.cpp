@@ -34,7 +34,7 @@ std::vector<int> held_face(const SpringNetwork<3, double>& network) {
 /// Its stiffness at rest, one face held, with a little on the diagonal.
 SparseMatrix<double> stiffness(const SpringNetwork<3, double>& network) {
     const FreeNodes free(network.n_nodes(), held_face(network));
-    auto matrix = spring_matrix(network, free);
+    auto matrix = network_matrix(network, free);
     add_stiffness<3, double>(network, network.rest_positions, HessianForm::exact, matrix);
     const double small = 1e-6 * matrix.matrix().diagonal().maxCoeff();
     for (Index f = 0; f < free.n_free(); ++f) {

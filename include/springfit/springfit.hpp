@@ -34,7 +34,6 @@
 #include <springfit/score/embedded_error.hpp>
 #include <springfit/score/frequency.hpp>
 #include <springfit/score/motion_error.hpp>
-#include <springfit/simulate/biquadratic_equilibrium.hpp>
 #include <springfit/simulate/biquadratic_euler.hpp>
 #include <springfit/simulate/equilibrium.hpp>
 #include <springfit/simulate/implicit_euler.hpp>

@@ -29,7 +29,7 @@ Points<Dim, Scalar> deformed(const SpringNetwork<Dim, Scalar>& network) {
 template <int Dim, class Scalar>
 DenseMatrix<Scalar> assembled(const SpringNetwork<Dim, Scalar>& network, const Points<Dim, Scalar>& x, Scalar h,
                               HessianForm curvature) {
-    auto matrix = spring_matrix(network, FreeNodes(network.n_nodes(), {}));
+    auto matrix = network_matrix(network, FreeNodes(network.n_nodes(), {}));
     matrix.set_zero();
     add_stiffness<Dim, Scalar>(network, x, curvature, matrix);
     add_damping<Dim, Scalar>(network, x, 1 / h, matrix);

@@ -35,7 +35,7 @@ TEST_CASE_TEMPLATE("biquadratic springs are the St Venant-Kirchhoff finite eleme
                 add_elastic_forces<dim, Scalar>(network, x, forces);
                 CHECK(test::relative_difference(-forces, model.internal_forces(x)) < test::rounding<Scalar>());
                 const FreeNodes free(x.cols(), {1});
-                auto matrix = triangle_matrix(network, free);
+                auto matrix = network_matrix(network, free);
                 add_stiffness<dim, Scalar>(network, x, HessianForm::exact, matrix);
                 CHECK(test::relative_difference(DenseMatrix<Scalar>(matrix.matrix()),
                                                 DenseMatrix<Scalar>(model.stiffness(x, free))) <

@@ -10,7 +10,7 @@ namespace springfit::test {
 /// Tangent stiffness of a network in its rest positions over all nodes, dense.
 template <int Dim>
 [[nodiscard]] DenseMatrix<double> network_stiffness(const SpringNetwork<Dim, double>& network) {
-    auto matrix = spring_matrix(network, FreeNodes(network.n_nodes(), {}));
+    auto matrix = network_matrix(network, FreeNodes(network.n_nodes(), {}));
     add_stiffness<Dim, double>(network, network.rest_positions, HessianForm::exact, matrix);
     const DenseMatrix<double> lower = matrix.matrix();
     return lower.selfadjointView<Eigen::Lower>();

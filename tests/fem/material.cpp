@@ -103,7 +103,7 @@ TEST_CASE("the polar decomposition keeps its derivatives where a cell is turned 
         Eigen::Matrix3d f = random_deformation<3, 3>(random, 0.3);
         f.col(1) *= -0.6;
         inverted += f.determinant() < 0 ? 1 : 0;
-        const Eigen::Matrix3d r = fem::detail::rotation_of(f);
+        const Eigen::Matrix3d r = rotation_of<double>(f);
         CHECK((r.transpose() * r - Eigen::Matrix3d::Identity()).norm() < 1e-12);
         CHECK(r.determinant() > 0);
         fem::detail::Response<3, 3, double> at;

@@ -16,7 +16,7 @@ SPRINGFIT_INSTANTIATION void add_forces(const BiquadraticNetwork<2, double>&, co
 SPRINGFIT_INSTANTIATION void compute_accelerations(const BiquadraticNetwork<2, double>&, const Points<2, double>&,
                                                    const Points<2, double>&, const Points<2, double>&,
                                                    Points<2, double>&);
-SPRINGFIT_INSTANTIATION BlockMatrix<2, double> triangle_matrix(const BiquadraticNetwork<2, double>&, const FreeNodes&);
+SPRINGFIT_INSTANTIATION BlockMatrix<2, double> network_matrix(const BiquadraticNetwork<2, double>&, const FreeNodes&);
 SPRINGFIT_INSTANTIATION void add_stiffness(const BiquadraticNetwork<2, double>&, const Points<2, double>&, HessianForm,
                                            BlockMatrix<2, double>&);
 SPRINGFIT_INSTANTIATION double stable_step_at(const BiquadraticNetwork<2, double>&, const Points<2, double>&);
@@ -33,7 +33,7 @@ SPRINGFIT_INSTANTIATION void add_forces(const BiquadraticNetwork<3, double>&, co
 SPRINGFIT_INSTANTIATION void compute_accelerations(const BiquadraticNetwork<3, double>&, const Points<3, double>&,
                                                    const Points<3, double>&, const Points<3, double>&,
                                                    Points<3, double>&);
-SPRINGFIT_INSTANTIATION BlockMatrix<3, double> triangle_matrix(const BiquadraticNetwork<3, double>&, const FreeNodes&);
+SPRINGFIT_INSTANTIATION BlockMatrix<3, double> network_matrix(const BiquadraticNetwork<3, double>&, const FreeNodes&);
 SPRINGFIT_INSTANTIATION void add_stiffness(const BiquadraticNetwork<3, double>&, const Points<3, double>&, HessianForm,
                                            BlockMatrix<3, double>&);
 SPRINGFIT_INSTANTIATION double stable_step_at(const BiquadraticNetwork<3, double>&, const Points<3, double>&);
@@ -49,7 +49,7 @@ SPRINGFIT_INSTANTIATION void add_forces(const BiquadraticNetwork<2, float>&, con
                                         const Points<2, float>&, Points<2, float>&);
 SPRINGFIT_INSTANTIATION void compute_accelerations(const BiquadraticNetwork<2, float>&, const Points<2, float>&,
                                                    const Points<2, float>&, const Points<2, float>&, Points<2, float>&);
-SPRINGFIT_INSTANTIATION BlockMatrix<2, float> triangle_matrix(const BiquadraticNetwork<2, float>&, const FreeNodes&);
+SPRINGFIT_INSTANTIATION BlockMatrix<2, float> network_matrix(const BiquadraticNetwork<2, float>&, const FreeNodes&);
 SPRINGFIT_INSTANTIATION void add_stiffness(const BiquadraticNetwork<2, float>&, const Points<2, float>&, HessianForm,
                                            BlockMatrix<2, float>&);
 SPRINGFIT_INSTANTIATION float stable_step_at(const BiquadraticNetwork<2, float>&, const Points<2, float>&);
@@ -65,7 +65,7 @@ SPRINGFIT_INSTANTIATION void add_forces(const BiquadraticNetwork<3, float>&, con
                                         const Points<3, float>&, Points<3, float>&);
 SPRINGFIT_INSTANTIATION void compute_accelerations(const BiquadraticNetwork<3, float>&, const Points<3, float>&,
                                                    const Points<3, float>&, const Points<3, float>&, Points<3, float>&);
-SPRINGFIT_INSTANTIATION BlockMatrix<3, float> triangle_matrix(const BiquadraticNetwork<3, float>&, const FreeNodes&);
+SPRINGFIT_INSTANTIATION BlockMatrix<3, float> network_matrix(const BiquadraticNetwork<3, float>&, const FreeNodes&);
 SPRINGFIT_INSTANTIATION void add_stiffness(const BiquadraticNetwork<3, float>&, const Points<3, float>&, HessianForm,
                                            BlockMatrix<3, float>&);
 SPRINGFIT_INSTANTIATION float stable_step_at(const BiquadraticNetwork<3, float>&, const Points<3, float>&);

@@ -14,7 +14,7 @@ SPRINGFIT_INSTANTIATION void add_spring_forces(const SpringNetwork<2, double>&, 
 SPRINGFIT_INSTANTIATION double volume_energy(const SpringNetwork<2, double>&, const Points<2, double>&);
 SPRINGFIT_INSTANTIATION void add_volume_forces(const SpringNetwork<2, double>&, const Points<2, double>&,
                                                Points<2, double>&);
-SPRINGFIT_INSTANTIATION BlockMatrix<2, double> spring_matrix(const SpringNetwork<2, double>&, const FreeNodes&);
+SPRINGFIT_INSTANTIATION BlockMatrix<2, double> network_matrix(const SpringNetwork<2, double>&, const FreeNodes&);
 SPRINGFIT_INSTANTIATION double stable_step_at(const SpringNetwork<2, double>&, const Points<2, double>&,
                                               const std::vector<int>&);
 SPRINGFIT_INSTANTIATION std::vector<int> clamped_nodes(const Scenario<2, double>&, Index);
@@ -30,7 +30,7 @@ SPRINGFIT_INSTANTIATION void add_spring_forces(const SpringNetwork<3, double>&, 
 SPRINGFIT_INSTANTIATION double volume_energy(const SpringNetwork<3, double>&, const Points<3, double>&);
 SPRINGFIT_INSTANTIATION void add_volume_forces(const SpringNetwork<3, double>&, const Points<3, double>&,
                                                Points<3, double>&);
-SPRINGFIT_INSTANTIATION BlockMatrix<3, double> spring_matrix(const SpringNetwork<3, double>&, const FreeNodes&);
+SPRINGFIT_INSTANTIATION BlockMatrix<3, double> network_matrix(const SpringNetwork<3, double>&, const FreeNodes&);
 SPRINGFIT_INSTANTIATION double stable_step_at(const SpringNetwork<3, double>&, const Points<3, double>&,
                                               const std::vector<int>&);
 SPRINGFIT_INSTANTIATION std::vector<int> clamped_nodes(const Scenario<3, double>&, Index);
@@ -55,7 +55,7 @@ SPRINGFIT_INSTANTIATION void add_spring_forces(const SpringNetwork<2, float>&, c
 SPRINGFIT_INSTANTIATION float volume_energy(const SpringNetwork<2, float>&, const Points<2, float>&);
 SPRINGFIT_INSTANTIATION void add_volume_forces(const SpringNetwork<2, float>&, const Points<2, float>&,
                                                Points<2, float>&);
-SPRINGFIT_INSTANTIATION BlockMatrix<2, float> spring_matrix(const SpringNetwork<2, float>&, const FreeNodes&);
+SPRINGFIT_INSTANTIATION BlockMatrix<2, float> network_matrix(const SpringNetwork<2, float>&, const FreeNodes&);
 SPRINGFIT_INSTANTIATION float stable_step_at(const SpringNetwork<2, float>&, const Points<2, float>&,
                                              const std::vector<int>&);
 SPRINGFIT_INSTANTIATION std::vector<int> clamped_nodes(const Scenario<2, float>&, Index);
@@ -80,7 +80,7 @@ SPRINGFIT_INSTANTIATION void add_spring_forces(const SpringNetwork<3, float>&, c
 SPRINGFIT_INSTANTIATION float volume_energy(const SpringNetwork<3, float>&, const Points<3, float>&);
 SPRINGFIT_INSTANTIATION void add_volume_forces(const SpringNetwork<3, float>&, const Points<3, float>&,
                                                Points<3, float>&);
-SPRINGFIT_INSTANTIATION BlockMatrix<3, float> spring_matrix(const SpringNetwork<3, float>&, const FreeNodes&);
+SPRINGFIT_INSTANTIATION BlockMatrix<3, float> network_matrix(const SpringNetwork<3, float>&, const FreeNodes&);
 SPRINGFIT_INSTANTIATION float stable_step_at(const SpringNetwork<3, float>&, const Points<3, float>&,
                                              const std::vector<int>&);
 SPRINGFIT_INSTANTIATION std::vector<int> clamped_nodes(const Scenario<3, float>&, Index);

@@ -25,7 +25,7 @@ TEST_CASE_TEMPLATE("forces and Hessian are the derivatives of the energy", T, te
     const auto x = test::moved<dim, double>(network.rest_positions, 0.05, 2);
     const auto forces = elastic_forces<dim, double>(network, x);
     const FreeNodes free(network.n_nodes(), {0, 3});
-    auto matrix = triangle_matrix(network, free);
+    auto matrix = network_matrix(network, free);
     add_stiffness<dim, double>(network, x, HessianForm::exact, matrix);
     const double h = 1e-6;
     for (unsigned seed = 3; seed < 6; ++seed) {
@@ -45,7 +45,7 @@ TEST_CASE_TEMPLATE("forces and Hessian are the derivatives of the energy", T, te
         CHECK((product - expected).norm() < 1e-7 * expected.norm());
     }
     // Without the negative geometric parts no direction has less curvature.
-    auto semidefinite = triangle_matrix(network, free);
+    auto semidefinite = network_matrix(network, free);
     add_stiffness<dim, double>(network, x, HessianForm::positive_semidefinite, semidefinite);
     const DenseMatrix<double> more = DenseMatrix<double>(semidefinite.matrix()) - DenseMatrix<double>(matrix.matrix());
     const Values<double> eigenvalues = test::eigenvalues(more);

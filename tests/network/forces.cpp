@@ -101,9 +101,9 @@ TEST_CASE_TEMPLATE("the Hessian is the derivative of the forces", T, test::Space
     const auto& x = given.positions;
     const auto& v = given.velocities;
     const FreeNodes free(network.n_nodes(), {1, 4});
-    auto stiffness = spring_matrix(network, free);
+    auto stiffness = network_matrix(network, free);
     add_stiffness<dim, double>(network, x, HessianForm::exact, stiffness);
-    auto damping = spring_matrix(network, free);
+    auto damping = network_matrix(network, free);
     add_damping<dim, double>(network, x, 1., damping);
     const Index n = dim * free.n_free();
     DenseMatrix<double> by_position(n, n);
@@ -137,7 +137,7 @@ TEST_CASE_TEMPLATE("the semidefinite Hessian drops negative curvature alone", T,
     auto [network, x, v] = example<dim, double>();
     const FreeNodes free(network.n_nodes(), {});
     const auto assemble = [&, &net = network](const Points<dim, double>& at, HessianForm curvature) {
-        auto matrix = spring_matrix(net, free);
+        auto matrix = network_matrix(net, free);
         add_stiffness<dim, double>(net, at, curvature, matrix);
         return full(matrix);
     };

@@ -81,7 +81,7 @@ Points<Dim, Scalar> volume_forces(const SpringNetwork<Dim, Scalar>& network, con
 template <int Dim>
 DenseMatrix<double> hessian(const SpringNetwork<Dim, double>& network, const FreeNodes& free,
                             const Points<Dim, double>& x, HessianForm curvature) {
-    auto matrix = spring_matrix(network, free);
+    auto matrix = network_matrix(network, free);
     add_stiffness<Dim, double>(network, x, curvature, matrix);
     const DenseMatrix<double> lower = matrix.matrix();
     return lower.template selfadjointView<Eigen::Lower>();

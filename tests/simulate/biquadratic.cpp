@@ -6,8 +6,8 @@
 #include <springfit/closed_form/delingette.hpp>
 #include <springfit/fem/statics.hpp>
 #include <springfit/motion/record.hpp>
-#include <springfit/simulate/biquadratic_equilibrium.hpp>
 #include <springfit/simulate/biquadratic_euler.hpp>
+#include <springfit/simulate/equilibrium.hpp>
 
 using namespace springfit;
 
@@ -105,7 +105,7 @@ TEST_CASE_TEMPLATE("the stable step is below the true limit and not far below it
     const auto network = sheet<dim, double>();
     for (const double stretch : {1., 1.3, 0.8}) {
         const Points<dim, double> x = test::moved<dim, double>(stretch * network.rest_positions, 0.03, 4);
-        auto matrix = triangle_matrix(network, FreeNodes(network.n_nodes(), {}));
+        auto matrix = network_matrix(network, FreeNodes(network.n_nodes(), {}));
         add_stiffness<dim, double>(network, x, HessianForm::exact, matrix);
         DenseMatrix<double> k = matrix.matrix();
         k = DenseMatrix<double>(k.selfadjointView<Eigen::Lower>());

@@ -21,9 +21,9 @@ template <int Dim>
 double true_limit(const SpringNetwork<Dim, double>& network, const Points<Dim, double>& positions,
                   const std::vector<int>& fixed) {
     const FreeNodes free(network.n_nodes(), fixed);
-    auto stiffness = spring_matrix(network, free);
+    auto stiffness = network_matrix(network, free);
     add_stiffness<Dim, double>(network, positions, HessianForm::exact, stiffness);
-    auto damping = spring_matrix(network, free);
+    auto damping = network_matrix(network, free);
     add_damping<Dim, double>(network, positions, 1., damping);
     Values<double> scale(Dim * free.n_free());
     for (Index f = 0; f < free.n_free(); ++f) {

@@ -24,7 +24,7 @@ Eigen::Matrix<Scalar, Dim, Dim> rotation() {
 template <int Dim, class Scalar>
 SparseMatrix<Scalar> stiffness(const SpringNetwork<Dim, Scalar>& network, const FreeNodes& free,
                                const Points<Dim, Scalar>& x, Scalar diagonal = 0) {
-    auto matrix = spring_matrix(network, free);
+    auto matrix = network_matrix(network, free);
     add_stiffness<Dim, Scalar>(network, x, HessianForm::exact, matrix);
     for (Index f = 0; f < free.n_free(); ++f) {
         matrix.add_diagonal(f, diagonal);

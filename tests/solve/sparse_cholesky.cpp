@@ -37,7 +37,7 @@ SparseMatrix<double> stiffness(int cells) {
     auto network = springs_along_edges(mesh, {.density = 1000.});
     network.stiffness = network.rest_length * 100;
     const FreeNodes free(network.n_nodes(), {0, 1, 2, cells});
-    auto matrix = spring_matrix(network, free);
+    auto matrix = network_matrix(network, free);
     add_stiffness<Dim, double>(network, network.rest_positions, HessianForm::exact, matrix);
     for (Index f = 0; f < free.n_free(); ++f) {
         matrix.add_diagonal(f, 0.1);

@@ -44,13 +44,12 @@ public:
 
 private:
     static constexpr int lanes = 32 / static_cast<int>(sizeof(Scalar)); ///< bodies in a group
-    /// A vector of space of as many bodies, one column per coordinate.
-    using Vectors = Eigen::Array<Scalar, lanes, Dim>;
-    using Lanes = Eigen::Array<Scalar, lanes, 1>;
+    using Lanes = detail::Lanes<Scalar, lanes>;
+    using Vectors = std::array<Lanes, Dim>; ///< a vector of as many bodies
 
     using Cell = detail::PackedCell<Dim, Scalar>;
 
-    struct Node {
+    struct alignas(32) Node {
         Vectors position, velocity, force, external;
     };
     struct Spring {

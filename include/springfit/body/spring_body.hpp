@@ -65,13 +65,10 @@ private:
     using Block = typename Packed::Block;
     using Cell = detail::PackedCell<Dim, Scalar>;
 
-    // In structs, since a template argument cannot carry the vector attribute.
-    struct Record {
+    struct Record { // a struct, since a template argument cannot carry the vector attribute
         typename Lanes::Record lanes;
     };
-    struct Force {
-        typename Lanes::Force lanes;
-    };
+    using Force = detail::Four<Scalar>;
 
     void advance(Scalar h, bool drifts);
     void add_spring_forces(const std::vector<Block>& blocks, bool on_both_ends);

@@ -11,26 +11,26 @@ SPRINGFIT_INSTANTIATION class ImplicitBody<2, float>;
 SPRINGFIT_INSTANTIATION class ImplicitBody<3, float>;
 SPRINGFIT_INSTANTIATION class ProjectiveBody<2, float>;
 SPRINGFIT_INSTANTIATION class ProjectiveBody<3, float>;
-SPRINGFIT_INSTANTIATION class detail::SpringPotential<2, float>;
-SPRINGFIT_INSTANTIATION class detail::ClampedStiffness<2, float>;
-SPRINGFIT_INSTANTIATION NewtonReport<float> minimise(detail::SpringPotential<2, float>&, Values<float>&,
+SPRINGFIT_INSTANTIATION class detail::NetworkPotential<SpringNetwork<2, float>>;
+SPRINGFIT_INSTANTIATION class detail::ClampedStiffness<SpringNetwork<2, float>>;
+SPRINGFIT_INSTANTIATION NewtonReport<float> minimise(detail::NetworkPotential<SpringNetwork<2, float>>&, Values<float>&,
                                                      CorotatedSolver<2, float>&, const NewtonOptions<float>&);
-SPRINGFIT_INSTANTIATION Equilibrium<2, float> detail::equilibrium(const detail::ClampedStiffness<2, float>&,
-                                                                  const Scenario<2, float>&,
-                                                                  const EquilibriumOptions<2, float>&, bool);
+SPRINGFIT_INSTANTIATION Equilibrium<2, float>
+detail::equilibrium(const detail::ClampedStiffness<SpringNetwork<2, float>>&, const Scenario<2, float>&,
+                    const EquilibriumOptions<2, float>&, bool);
 SPRINGFIT_INSTANTIATION class SymplecticEuler<2, float>;
 SPRINGFIT_INSTANTIATION class ImplicitEuler<2, float>;
 SPRINGFIT_INSTANTIATION class NetworkStatics<2, float>;
 SPRINGFIT_INSTANTIATION Equilibrium<2, float> equilibrium(const SpringNetwork<2, float>&, const Scenario<2, float>&,
                                                           const EquilibriumOptions<2, float>&);
 SPRINGFIT_INSTANTIATION float stable_step(const SpringNetwork<2, float>&, const std::vector<int>&);
-SPRINGFIT_INSTANTIATION class detail::SpringPotential<3, float>;
-SPRINGFIT_INSTANTIATION class detail::ClampedStiffness<3, float>;
-SPRINGFIT_INSTANTIATION NewtonReport<float> minimise(detail::SpringPotential<3, float>&, Values<float>&,
+SPRINGFIT_INSTANTIATION class detail::NetworkPotential<SpringNetwork<3, float>>;
+SPRINGFIT_INSTANTIATION class detail::ClampedStiffness<SpringNetwork<3, float>>;
+SPRINGFIT_INSTANTIATION NewtonReport<float> minimise(detail::NetworkPotential<SpringNetwork<3, float>>&, Values<float>&,
                                                      CorotatedSolver<3, float>&, const NewtonOptions<float>&);
-SPRINGFIT_INSTANTIATION Equilibrium<3, float> detail::equilibrium(const detail::ClampedStiffness<3, float>&,
-                                                                  const Scenario<3, float>&,
-                                                                  const EquilibriumOptions<3, float>&, bool);
+SPRINGFIT_INSTANTIATION Equilibrium<3, float>
+detail::equilibrium(const detail::ClampedStiffness<SpringNetwork<3, float>>&, const Scenario<3, float>&,
+                    const EquilibriumOptions<3, float>&, bool);
 SPRINGFIT_INSTANTIATION class SymplecticEuler<3, float>;
 SPRINGFIT_INSTANTIATION class ImplicitEuler<3, float>;
 SPRINGFIT_INSTANTIATION class NetworkStatics<3, float>;

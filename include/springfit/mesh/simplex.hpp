@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <springfit/core/types.hpp>
+#include <springfit/core/small_vectors.hpp>
 
 namespace springfit {
 
@@ -9,17 +9,66 @@ namespace springfit {
 template <int Dim, std::floating_point Scalar>
 using SimplexCorners = Eigen::Matrix<Scalar, Dim, Dim + 1>;
 
+namespace detail {
+
+/// 1 / Dim!, the part of a simplex in the volume that its sides span.
+template <int Dim, std::floating_point Scalar>
+inline constexpr Scalar simplex_share = Scalar(1) / (Dim == 2 ? 2 : 6);
+
+/// Returns the volume that `Dim` sides from one corner span, det(s_1, ..., s_Dim), and writes its derivative by each of
+/// them, the cofactors of the matrix of the sides. Of a simplex they are Dim! times as much.
+///
+/// The one place of this formula, for vectors of numbers and of lanes alike.
+template <int Dim, class Vec>
+auto spanned_volume(const std::array<Vec, Dim>& sides, std::array<Vec, Dim>& gradient) {
+    if constexpr (Dim == 2) {
+        gradient[0] = clockwise(sides[1]);
+        gradient[1] = counter_clockwise(sides[0]);
+    } else {
+        gradient[0] = cross(sides[1], sides[2]);
+        gradient[1] = cross(sides[2], sides[0]);
+        gradient[2] = cross(sides[0], sides[1]);
+    }
+    return dot<Dim>(sides[0], gradient[0]);
+}
+
+/// How that derivative changes where the sides change by `moved`: the second derivative times `moved`.
+template <int Dim, class Vec>
+std::array<Vec, Dim> spanned_gradient_along(const std::array<Vec, Dim>& sides, const std::array<Vec, Dim>& moved) {
+    std::array<Vec, Dim> change;
+    if constexpr (Dim == 2) {
+        (void)spanned_volume<2>(moved, change); // linear
+    } else {
+        for (int a = 0; a < 3; ++a) {
+            const int b = (a + 1) % 3, c = (a + 2) % 3;
+            const Vec first = cross(moved[b], sides[c]);
+            const Vec second = cross(sides[b], moved[c]);
+            for (int d = 0; d < 3; ++d) {
+                change[a][d] = first[d] + second[d];
+            }
+        }
+    }
+    return change;
+}
+
+/// The sides of a simplex from its first corner.
+template <int Dim, std::floating_point Scalar>
+std::array<Vector<Dim, Scalar>, Dim> sides_of(const SimplexCorners<Dim, Scalar>& corners) {
+    std::array<Vector<Dim, Scalar>, Dim> sides;
+    for (int a = 0; a < Dim; ++a) {
+        sides[a] = corners.col(a + 1) - corners.col(0);
+    }
+    return sides;
+}
+
+} // namespace detail
+
 /// Volume det(x_1 - x_0, ..., x_Dim - x_0) / Dim!, m^3, in the plane area, m^2; negative where the simplex is inverted.
 template <int Dim, std::floating_point Scalar>
 [[nodiscard]] Scalar signed_volume(const SimplexCorners<Dim, Scalar>& corners) {
-    const Vector<Dim, Scalar> a = corners.col(1) - corners.col(0);
-    const Vector<Dim, Scalar> b = corners.col(2) - corners.col(0);
-    if constexpr (Dim == 2) {
-        return (a(0) * b(1) - a(1) * b(0)) / 2;
-    } else {
-        const Vector<Dim, Scalar> c = corners.col(3) - corners.col(0);
-        return a.dot(b.cross(c)) / 6;
-    }
+    std::array<Vector<Dim, Scalar>, Dim> gradient;
+    return detail::simplex_share<Dim, Scalar> *
+           detail::spanned_volume<Dim>(detail::sides_of<Dim, Scalar>(corners), gradient);
 }
 
 /// Derivative of the signed volume by each corner `[Dim x Dim + 1]`, m^2, in the plane m.
@@ -28,19 +77,13 @@ template <int Dim, std::floating_point Scalar>
 /// to 0.
 template <int Dim, std::floating_point Scalar>
 [[nodiscard]] Eigen::Matrix<Scalar, Dim, Dim + 1> volume_gradient(const SimplexCorners<Dim, Scalar>& corners) {
+    std::array<Vector<Dim, Scalar>, Dim> by_side;
+    (void)detail::spanned_volume<Dim>(detail::sides_of<Dim, Scalar>(corners), by_side);
     Eigen::Matrix<Scalar, Dim, Dim + 1> gradient;
-    const Vector<Dim, Scalar> a = corners.col(1) - corners.col(0);
-    const Vector<Dim, Scalar> b = corners.col(2) - corners.col(0);
-    if constexpr (Dim == 2) {
-        gradient.col(1) << b(1) / 2, -b(0) / 2;
-        gradient.col(2) << -a(1) / 2, a(0) / 2;
-        gradient.col(0) = -gradient.col(1) - gradient.col(2);
-    } else {
-        const Vector<Dim, Scalar> c = corners.col(3) - corners.col(0);
-        gradient.col(1) = b.cross(c) / 6;
-        gradient.col(2) = c.cross(a) / 6;
-        gradient.col(3) = a.cross(b) / 6;
-        gradient.col(0) = -gradient.col(1) - gradient.col(2) - gradient.col(3);
+    gradient.col(0).setZero();
+    for (int a = 0; a < Dim; ++a) {
+        gradient.col(a + 1) = detail::simplex_share<Dim, Scalar> * by_side[a];
+        gradient.col(0) -= gradient.col(a + 1);
     }
     return gradient;
 }

@@ -106,12 +106,12 @@ void compute_accelerations(const BiquadraticNetwork<Dim, Scalar>& network, const
 
 /// The matrix of a biquadratic network over its free nodes, filled by `add_stiffness`.
 template <int Dim, std::floating_point Scalar>
-[[nodiscard]] BlockMatrix<Dim, Scalar> triangle_matrix(const BiquadraticNetwork<Dim, Scalar>& network,
-                                                       const FreeNodes& free) {
+[[nodiscard]] BlockMatrix<Dim, Scalar> network_matrix(const BiquadraticNetwork<Dim, Scalar>& network,
+                                                      const FreeNodes& free) {
     return BlockMatrix<Dim, Scalar>(free, cliques_of(network.triangles));
 }
 
-/// Adds the Hessian of the elastic energy at `positions`, N/m, to a `triangle_matrix`: 4 sum S_ij r_i r_j' and, for
+/// Adds the Hessian of the elastic energy at `positions`, N/m, to a `network_matrix`: 4 sum S_ij r_i r_j' and, for
 /// each edge, 2 s_i I, which `HessianForm::positive_semidefinite` leaves out where s_i < 0. O(triangles).
 template <int Dim, std::floating_point Scalar>
 void add_stiffness(const BiquadraticNetwork<Dim, Scalar>& network, const Points<Dim, Scalar>& positions,

@@ -99,7 +99,8 @@ enum class HessianForm {
 /// The matrix of a network's springs and cells over its free nodes, filled by `add_stiffness` and `add_damping`. Its
 /// cliques are the springs, then the cells: clique n_springs + c is cell c.
 template <int Dim, std::floating_point Scalar>
-[[nodiscard]] BlockMatrix<Dim, Scalar> spring_matrix(const SpringNetwork<Dim, Scalar>& network, const FreeNodes& free) {
+[[nodiscard]] BlockMatrix<Dim, Scalar> network_matrix(const SpringNetwork<Dim, Scalar>& network,
+                                                      const FreeNodes& free) {
     Cliques cliques = cliques_of(network.springs);
     const Cliques cells = cliques_of(network.cells);
     cliques.insert(cliques.end(), cells.begin(), cells.end());
@@ -142,7 +143,7 @@ void add_volume_stiffness(const SpringNetwork<Dim, Scalar>& network, const Point
 
 } // namespace detail
 
-/// Adds the Hessian of the elastic energy at `positions`, N/m, to a `spring_matrix`. O(springs + cells).
+/// Adds the Hessian of the elastic energy at `positions`, N/m, to a `network_matrix`. O(springs + cells).
 template <int Dim, std::floating_point Scalar>
 void add_stiffness(const SpringNetwork<Dim, Scalar>& network, const Points<Dim, Scalar>& positions,
                    HessianForm curvature, BlockMatrix<Dim, Scalar>& matrix) {
@@ -160,7 +161,7 @@ void add_stiffness(const SpringNetwork<Dim, Scalar>& network, const Points<Dim, 
     detail::add_volume_stiffness<Dim, Scalar>(network, positions, curvature, matrix);
 }
 
-/// Adds `factor` times the damping matrix sum_e c_e n_e n_e' at `positions`, N s/m, to a `spring_matrix`. O(springs).
+/// Adds `factor` times the damping matrix sum_e c_e n_e n_e' at `positions`, N s/m, to a `network_matrix`. O(springs).
 template <int Dim, std::floating_point Scalar>
 void add_damping(const SpringNetwork<Dim, Scalar>& network, const Points<Dim, Scalar>& positions, Scalar factor,
                  BlockMatrix<Dim, Scalar>& matrix) {

@@ -112,7 +112,7 @@ lowest_frequency(const SpringNetwork<Dim, Scalar>& network, const std::vector<in
                  const FrequencyOptions<std::type_identity_t<Scalar>>& options = {}) {
     validate(network);
     const FreeNodes free(network.n_nodes(), clamped);
-    auto stiffness = spring_matrix(network, free);
+    auto stiffness = network_matrix(network, free);
     add_stiffness<Dim, Scalar>(network, network.rest_positions, HessianForm::exact, stiffness);
     return detail::lowest_mode<Dim, Scalar>(stiffness.matrix(), network.mass, free, options);
 }

@@ -69,7 +69,7 @@ FreeNodes free_of(const Motion<Dim, Scalar>& reference, Index n_nodes) {
 /// What static cases share that have their clamps in common: each once, and which is whose.
 template <int Dim, std::floating_point Scalar>
 struct StiffnessByClamps {
-    std::vector<std::unique_ptr<ClampedStiffness<Dim, Scalar>>> held;
+    std::vector<std::unique_ptr<ClampedStiffness<SpringNetwork<Dim, Scalar>>>> held;
     std::vector<std::size_t> of_case; ///< of no meaning for a case that is not static
 
     StiffnessByClamps(const SpringNetwork<Dim, Scalar>& network, const std::vector<Scenario<Dim, Scalar>>& scenarios,
@@ -90,7 +90,7 @@ struct StiffnessByClamps {
         held.resize(clamps.size());
         execution.for_chunks(static_cast<Index>(clamps.size()), 1, [&](Index, Index begin, Index) {
             const auto h = static_cast<std::size_t>(begin);
-            held[h] = std::make_unique<ClampedStiffness<Dim, Scalar>>(network, clamps[h]);
+            held[h] = std::make_unique<ClampedStiffness<SpringNetwork<Dim, Scalar>>>(network, clamps[h]);
         });
     }
 };

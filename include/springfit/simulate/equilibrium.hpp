@@ -28,6 +28,14 @@ struct Equilibrium {
     bool stable = false;
 };
 
+/// A network whose energy has lengths at rest: `SpringNetwork` or `BiquadraticNetwork`.
+template <class N>
+concept ElasticNetwork = requires(const N& network) {
+    network.rest_positions;
+    network.rest_length;
+    network.mass;
+};
+
 namespace detail {
 
 /// True where the smallest eigenvalue, found by a few inverse iterations, stands clear of rounding.
@@ -55,8 +63,8 @@ bool is_positive_definite(SymmetricSolver<Scalar>& solver, const SparseMatrix<Sc
 }
 
 /// Throws InvalidArgument for a scenario or option that does not fit the network.
-template <int Dim, std::floating_point Scalar>
-void check(const SpringNetwork<Dim, Scalar>& network, const Scenario<Dim, Scalar>& scenario,
+template <class Network, int Dim, std::floating_point Scalar>
+void check(const Network& network, const Scenario<Dim, Scalar>& scenario,
            const EquilibriumOptions<Dim, Scalar>& options) {
     validate(scenario, network.n_nodes());
     require(options.tolerance > 0, "tolerance", "a positive tolerance", options.tolerance);
@@ -66,19 +74,19 @@ void check(const SpringNetwork<Dim, Scalar>& network, const Scenario<Dim, Scalar
 }
 
 /// How far a network that is held at all may go from its start, m: a thousand times its size.
-template <int Dim, std::floating_point Scalar>
-Scalar reach(const SpringNetwork<Dim, Scalar>& network, const Points<Dim, Scalar>& start) {
+template <class Network, int Dim, std::floating_point Scalar>
+Scalar reach(const Network& network, const Points<Dim, Scalar>& start) {
     const auto extent = [](const Points<Dim, Scalar>& x) {
         return (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).maxCoeff();
     };
-    const Scalar longest = network.n_springs() > 0 ? network.rest_length.maxCoeff() : Scalar(0);
+    const Scalar longest = network.rest_length.size() > 0 ? network.rest_length.maxCoeff() : Scalar(0);
     return 1000 * (extent(network.rest_positions) + extent(start) + longest);
 }
 
 /// The same as the function of this name, for a scenario whose clamped nodes are those of `held`. Whether it is stable
 /// is found where `find_stability` says so; that takes a factorisation of its own.
-template <int Dim, std::floating_point Scalar>
-Equilibrium<Dim, Scalar> equilibrium(const ClampedStiffness<Dim, Scalar>& held, const Scenario<Dim, Scalar>& scenario,
+template <class Network, int Dim, std::floating_point Scalar>
+Equilibrium<Dim, Scalar> equilibrium(const ClampedStiffness<Network>& held, const Scenario<Dim, Scalar>& scenario,
                                      const EquilibriumOptions<Dim, Scalar>& options, bool find_stability) {
     const auto& network = held.network();
     const FreeNodes& free = held.free_nodes();
@@ -129,17 +137,19 @@ Equilibrium<Dim, Scalar> equilibrium(const ClampedStiffness<Dim, Scalar>& held, 
 /// E(x) - f_ext . x over the free nodes, by Newton's method with a line search. Its linear systems are solved by
 /// conjugate gradients with the factor of the stiffness at rest, turned with the body.
 ///
-/// Springs alone need not hold a shape: see `Equilibrium::stable`. Where the matrix is singular or indefinite, Newton's
-/// step still goes downhill. Status `converged` only where the forces balance, to `tolerance` or to rounding;
-/// `diverged` where a node goes farther than a thousand times the network's size, which nothing holds then. Throws
-/// InvalidArgument for a scenario or option that does not fit.
-template <int Dim, std::floating_point Scalar>
-[[nodiscard]] Equilibrium<Dim, Scalar> equilibrium(const SpringNetwork<Dim, Scalar>& network,
-                                                   const Scenario<Dim, Scalar>& scenario,
-                                                   const EquilibriumOptions<Dim, Scalar>& options = {}) {
+/// The network need not hold a shape, as springs alone, or a flat
+/// membrane across its plane: see `Equilibrium::stable`. Where the matrix is singular or indefinite, Newton's step
+/// still goes downhill. Status `converged` only where the forces balance, to `tolerance` or to rounding; `diverged`
+/// where a node goes farther than a thousand times the network's size, which nothing holds then. Throws InvalidArgument
+/// for a scenario or option that does not fit.
+template <ElasticNetwork Network>
+[[nodiscard]] auto equilibrium(const Network& network,
+                               const Scenario<Network::dimension, typename Network::Scalar>& scenario,
+                               const EquilibriumOptions<Network::dimension, typename Network::Scalar>& options = {})
+    -> Equilibrium<Network::dimension, typename Network::Scalar> {
     validate(network);
     detail::check(network, scenario, options);
-    const detail::ClampedStiffness<Dim, Scalar> held(network, clamped_nodes(scenario, network.n_nodes()));
+    const detail::ClampedStiffness<Network> held(network, clamped_nodes(scenario, network.n_nodes()));
     return detail::equilibrium(held, scenario, options, true);
 }
 

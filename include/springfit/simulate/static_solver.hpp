@@ -38,8 +38,8 @@ private:
 
     SpringNetwork<Dim, Scalar> m_network;
     std::vector<int> m_clamped;
-    std::optional<detail::ClampedStiffness<Dim, Scalar>> m_springs; ///< of m_network, for `balance`
-    bool m_is_linear_ready = false;                                 ///< the rest is of the present clamps
+    std::optional<detail::ClampedStiffness<SpringNetwork<Dim, Scalar>>> m_springs; ///< of m_network, for `balance`
+    bool m_is_linear_ready = false; ///< the rest is of the present clamps
     FreeNodes m_free;
     BlockMatrix<Dim, Scalar> m_full;  ///< stiffness of all nodes at rest
     BlockMatrix<Dim, Scalar> m_held;  ///< of the free ones

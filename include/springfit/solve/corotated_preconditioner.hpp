@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include <springfit/solve/detail/node_cholesky.hpp>
+#include <springfit/solve/detail/node_rotations.hpp>
 #include <springfit/solve/free_nodes.hpp>
 
 namespace springfit {
@@ -13,8 +14,8 @@ namespace springfit {
 /// The Cholesky factor of a body's stiffness at rest, turned with the body: R K0^-1 R', R the rotation of the
 /// surroundings of each node.
 ///
-/// What an elastic body answers hardly depends on how it is turned, so this preconditions conjugate gradients in bent
-/// and twisted states almost as well as at rest. Copies share the factor, which does not change: one per thread.
+/// An elastic body's response barely depends on its orientation, so this preconditions conjugate gradients in bent and
+/// twisted states almost as well as at rest. Copies share the factor, which does not change: one per thread.
 /// Memory: 6 bytes per entry of the factor, which is kept in single precision.
 template <int Dim, std::floating_point Scalar>
 class CorotatedPreconditioner {
@@ -38,24 +39,15 @@ public:
     void apply(const Values<Scalar>& right, Values<Scalar>& solution) const;
 
 private:
-    using Rotation = Eigen::Matrix<Scalar, Dim, Dim>;
-
     struct Rest {
         FreeNodes free;
         NodePairs pairs;
-        Points<Dim, Scalar> vectors; ///< r0 / |r0|^2 of each pair
+        Points<Dim, Scalar> weighted; ///< r0 / |r0|^2 of each pair
         detail::NodeCholesky<Dim, Scalar> factor;
     };
 
-    [[nodiscard]] Eigen::Map<const Rotation> rotation(Index f) const {
-        return Eigen::Map<const Rotation>(m_rotations.col(f).data());
-    }
-
-    /// The rotation nearest to A, or the identity where A is no deformation of positive volume.
-    static Rotation rotation_of(const Rotation& a);
-
     std::shared_ptr<const Rest> m_rest;
-    Points<Dim * Dim, Scalar> m_rotations; ///< of the free nodes
+    std::optional<detail::NodeRotations<Dim, Scalar>> m_rotations;
 };
 
 } // namespace springfit

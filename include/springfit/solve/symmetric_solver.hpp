@@ -8,6 +8,7 @@
 
 #include <springfit/solve/conjugate_gradients.hpp>
 #include <springfit/solve/sparse_cholesky.hpp>
+#include <springfit/solve/symmetric_matrix.hpp>
 
 namespace springfit {
 

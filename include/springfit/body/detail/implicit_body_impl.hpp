@@ -180,7 +180,7 @@ void ImplicitBody<Dim, ScalarType, LinearScalar>::add_cells(const typename Packe
         const Scalar pressure = kappa * (signed_volume<Dim, Scalar>(corners) * cell.inverse_volume - 1);
         const SimplexCorners<Dim, Scalar> gradient = volume_gradient<Dim, Scalar>(corners);
         term.gradient = (std::sqrt(std::abs(kappa) * cell.inverse_volume) * gradient).template cast<LinearScalar>();
-        term.corners = (corners.colwise() - corners.col(0).eval()).template cast<LinearScalar>();
+        term.sides = detail::sides_of<Dim, LinearScalar>(corners.template cast<LinearScalar>());
         term.sign = kappa > 0 ? LinearScalar(1) : kappa < 0 && exact ? LinearScalar(-1) : LinearScalar(0);
         term.pressure = exact ? static_cast<LinearScalar>(pressure) : LinearScalar(0);
         for (int a = 0; a <= Dim; ++a) {

@@ -7,13 +7,6 @@
 
 namespace springfit::detail {
 
-/// Four numbers of a node or a spring that one instruction works on. In a struct, since a template argument cannot
-/// carry the vector attribute.
-template <std::floating_point Scalar>
-struct Four {
-    Simd<Scalar, 4> lanes = {};
-};
-
 /// Writes the dot products of four pairs of vectors.
 template <std::floating_point Scalar>
 void dot_products(const Four<Scalar>* a, const Four<Scalar>* b, Scalar* target) {

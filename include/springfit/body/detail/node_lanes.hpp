@@ -1,21 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <concepts>
 #include <cstddef>
 
-/// Vectors of a few numbers that one instruction works on, by the vector types that GCC and Clang share: the compiler
-/// makes AVX, SSE or scalar instructions of them, whatever it is told that the machine has. They go in and out of
-/// functions by reference: how they go by value differs between machines, of which GCC warns (-Wpsabi).
+#include <springfit/mesh/simplex.hpp>
+
 namespace springfit::detail {
-
-template <std::floating_point Scalar, int Size>
-struct SimdOf {
-    typedef Scalar type __attribute__((vector_size(Size * sizeof(Scalar)))); // `using` would lose the attribute
-};
-
-template <std::floating_point Scalar, int Size>
-using Simd = typename SimdOf<Scalar, Size>::type;
 
 /// Asks for an object in memory before it is needed; it may lie beyond the end of its array.
 template <class Object>
@@ -35,6 +25,38 @@ void concatenate(const Four* parts, Scalar* target) {
         static_assert(Size == 8);
         *reinterpret_cast<All*>(target) = __builtin_shufflevector(parts[0], parts[1], 0, 1, 2, 3, 4, 5, 6, 7);
     }
+}
+
+/// The coordinates of a vector of a node or a spring in one register, those beyond the dimension without meaning. In a
+/// struct, since a template argument cannot carry the vector attribute.
+template <std::floating_point Scalar>
+struct Four {
+    Simd<Scalar, 4> lanes = {};
+};
+
+template <std::floating_point Scalar>
+Four<Scalar> cross(const Four<Scalar>& a, const Four<Scalar>& b) {
+    const Simd<Scalar, 4> turned_a = __builtin_shufflevector(a.lanes, a.lanes, 1, 2, 0, 3); // (y z x -)
+    const Simd<Scalar, 4> turned_b = __builtin_shufflevector(b.lanes, b.lanes, 1, 2, 0, 3);
+    const Simd<Scalar, 4> c = a.lanes * turned_b - turned_a * b.lanes;
+    return {__builtin_shufflevector(c, c, 1, 2, 0, 3)};
+}
+
+template <std::floating_point Scalar>
+Four<Scalar> clockwise(const Four<Scalar>& a) {
+    const Simd<Scalar, 4> sign = {1, -1, 0, 0};
+    return {sign * __builtin_shufflevector(a.lanes, a.lanes, 1, 0, 3, 2)};
+}
+
+template <std::floating_point Scalar>
+Four<Scalar> counter_clockwise(const Four<Scalar>& a) {
+    return {-clockwise(a).lanes};
+}
+
+template <int Dim, std::floating_point Scalar>
+Scalar dot(const Four<Scalar>& a, const Four<Scalar>& b) {
+    const Simd<Scalar, 4> products = a.lanes * b.lanes;
+    return Dim == 2 ? products[0] + products[1] : products[0] + products[1] + products[2];
 }
 
 /// What the step kernel keeps of a node in one load: its position and its velocity, in space (x y z - u v w -).
@@ -69,24 +91,7 @@ struct NodeLanes<3, Scalar> {
         split(sums, squares, rates);
     }
 
-    /// The volume that three edges from one corner span, 3! V, and its gradient by the end of each.
-    static Scalar volume(const Force* edges, Force* gradients) {
-        Force turned[3];
-        for (int a = 0; a < 3; ++a) {
-            turn(edges[a], turned[a]);
-        }
-        for (int a = 0; a < 3; ++a) {
-            const int b = (a + 1) % 3, c = (a + 2) % 3;
-            turn(edges[b] * turned[c] - turned[b] * edges[c], gradients[a]);
-        }
-        const Force products = edges[0] * gradients[0];
-        return products[0] + products[1] + products[2];
-    }
-
 private:
-    /// (y z x -)
-    static void turn(const Force& r, Force& turned) { turned = __builtin_shufflevector(r, r, 1, 2, 0, 3); }
-
     /// Half of the sums of two differences: (r_1 r_1, .) in pairs of lanes.
     static void add_products(const Record& a, const Record& b, Record& sums) {
         const Record x = __builtin_shufflevector(a, a, 0, 1, 2, 3, 0, 1, 2, 3) * a;
@@ -118,15 +123,6 @@ struct NodeLanes<2, Scalar> {
         add_products(d[2], d[3], last);
         squares = __builtin_shufflevector(first, last, 0, 1, 4, 5);
         rates = __builtin_shufflevector(first, last, 2, 3, 6, 7);
-    }
-
-    /// The area that two edges from one corner span, 2! V, and its gradient by the end of each.
-    static Scalar volume(const Force* edges, Force* gradients) {
-        const Force sign = {1, -1, 0, 0};
-        gradients[0] = sign * __builtin_shufflevector(edges[1], edges[1], 1, 0, 3, 2);
-        gradients[1] = -sign * __builtin_shufflevector(edges[0], edges[0], 1, 0, 3, 2);
-        const Force products = edges[0] * gradients[0];
-        return products[0] + products[1];
     }
 
 private:

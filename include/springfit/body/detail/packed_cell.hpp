@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include <springfit/mesh/simplex.hpp>
 #include <springfit/network/spring_network.hpp>
 
 namespace springfit::detail {
@@ -11,8 +12,7 @@ namespace springfit::detail {
 /// A cell that holds its volume, as a step reads it.
 template <int Dim, std::floating_point Scalar>
 struct PackedCell {
-    /// Of a simplex in the volume that its edges from one corner span.
-    static constexpr Scalar share = Scalar(1) / (Dim == 2 ? 2 : 6);
+    static constexpr Scalar share = simplex_share<Dim, Scalar>;
 
     int corners[Dim + 1];
     Scalar stiffness;      ///< kappa

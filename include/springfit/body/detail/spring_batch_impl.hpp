@@ -36,10 +36,11 @@ SpringBatch<Dim, ScalarType>::SpringBatch(const SpringNetwork<Dim, Scalar>& netw
         m_first_spring.push_back(static_cast<int>(m_springs.size()));
     }
     m_cells = detail::packed_cells(network, number);
-    const Vectors zero = Vectors::Zero();
-    m_nodes.assign(static_cast<std::size_t>(Execution::n_chunks(n_bodies, lanes)) * n, {zero, zero, zero, zero});
+    m_nodes.assign(static_cast<std::size_t>(Execution::n_chunks(n_bodies, lanes)) * n, Node{});
     for (std::size_t i = 0; i < m_nodes.size(); ++i) {
-        m_nodes[i].position = network.rest_positions.col(m_order[i % n]).transpose().array().replicate(lanes, 1);
+        for (int d = 0; d < Dim; ++d) {
+            m_nodes[i].position[d] = network.rest_positions(d, m_order[i % n]);
+        }
     }
 }
 
@@ -50,7 +51,8 @@ template <class Visit>
 void SpringBatch<Dim, ScalarType>::for_nodes(Index body, const Visit& visit) {
     require(body >= 0 && body < m_n_bodies, "body", text("a number in [0, ", m_n_bodies, ")"), body);
     for (Index place = 0; place < n_nodes(); ++place) {
-        visit(m_order[static_cast<std::size_t>(place)], node(body / lanes, static_cast<int>(place)), body % lanes);
+        visit(m_order[static_cast<std::size_t>(place)], node(body / lanes, static_cast<int>(place)),
+              static_cast<int>(body % lanes));
     }
 }
 
@@ -64,8 +66,10 @@ void SpringBatch<Dim, ScalarType>::read(Index body, Points<Dim, Scalar>& positio
     for (Index place = 0; place < n_nodes(); ++place) {
         const Node& own = node(body / lanes, static_cast<int>(place));
         const int i = m_order[static_cast<std::size_t>(place)];
-        positions.col(i) = own.position.row(body % lanes).transpose();
-        velocities.col(i) = own.velocity.row(body % lanes).transpose();
+        for (int d = 0; d < Dim; ++d) {
+            positions(d, i) = own.position[d](body % lanes);
+            velocities(d, i) = own.velocity[d](body % lanes);
+        }
     }
 }
 
@@ -75,9 +79,11 @@ void SpringBatch<Dim, ScalarType>::write(Index body, const Points<Dim, Scalar>& 
                                          const Points<Dim, Scalar>& velocities) {
     require(positions.cols() == n_nodes(), "positions", text(n_nodes(), " nodes"), positions.cols());
     require(velocities.cols() == n_nodes(), "velocities", text(n_nodes(), " nodes"), velocities.cols());
-    for_nodes(body, [&](int i, Node& own, Index lane) {
-        own.position.row(lane) = positions.col(i).transpose();
-        own.velocity.row(lane) = velocities.col(i).transpose();
+    for_nodes(body, [&](int i, Node& own, int lane) {
+        for (int d = 0; d < Dim; ++d) {
+            own.position[d](lane) = positions(d, i);
+            own.velocity[d](lane) = velocities(d, i);
+        }
     });
 }
 
@@ -85,7 +91,11 @@ template <int Dim, std::floating_point ScalarType>
     requires SpatialDimension<Dim>
 void SpringBatch<Dim, ScalarType>::set_external_forces(Index body, const Points<Dim, Scalar>& forces) {
     require(forces.cols() == n_nodes(), "forces", text(n_nodes(), " nodes"), forces.cols());
-    for_nodes(body, [&](int i, Node& own, Index lane) { own.external.row(lane) = forces.col(i).transpose(); });
+    for_nodes(body, [&](int i, Node& own, int lane) {
+        for (int d = 0; d < Dim; ++d) {
+            own.external[d](lane) = forces(d, i);
+        }
+    });
 }
 
 template <int Dim, std::floating_point ScalarType>
@@ -119,28 +129,34 @@ void SpringBatch<Dim, ScalarType>::advance(Index group, Scalar h) {
         Node& own = nodes[i];
         const Vectors position = own.position;
         const Vectors velocity = own.velocity;
-        Vectors force = own.force + own.external;
+        Vectors force;
+        for (int d = 0; d < Dim; ++d) {
+            force[d] = own.force[d] + own.external[d];
+        }
         for (int s = m_first_spring[i]; s < m_first_spring[i + 1]; ++s) {
             const Spring& spring = m_springs[static_cast<std::size_t>(s)];
             Node& other = nodes[spring.second];
-            const Vectors r = other.position - position;
-            Lanes square = Lanes::Constant(std::numeric_limits<Scalar>::min());
-            Lanes rate = Lanes::Zero();
+            Vectors r;
+            Lanes square = std::numeric_limits<Scalar>::min();
+            Lanes rate = Scalar(0);
             for (int d = 0; d < Dim; ++d) {
-                square += r.col(d).square();
-                rate += r.col(d) * (other.velocity.col(d) - velocity.col(d));
+                r[d] = other.position[d] - position[d];
+                square += r[d] * r[d];
+                rate += r[d] * (other.velocity[d] - velocity[d]);
             }
-            const Lanes inverse = square.sqrt().inverse();
+            const Lanes inverse = Scalar(1) / sqrt(square);
             const Lanes factor = spring.stiffness - inverse * (spring.pull - spring.damping * (inverse * rate));
             for (int d = 0; d < Dim; ++d) {
-                const Lanes along = factor * r.col(d);
-                force.col(d) += along;
-                other.force.col(d) -= along;
+                const Lanes along = factor * r[d];
+                force[d] += along;
+                other.force[d] -= along;
             }
         }
-        own.velocity = velocity + (h * m_inverse_mass[i]) * force;
-        own.position = position + h * own.velocity;
-        own.force.setZero();
+        for (int d = 0; d < Dim; ++d) {
+            own.velocity[d] = velocity[d] + (h * m_inverse_mass[i]) * force[d];
+            own.position[d] = position[d] + h * own.velocity[d];
+            own.force[d] = Scalar(0);
+        }
     }
 }
 
@@ -150,38 +166,24 @@ template <int Dim, std::floating_point ScalarType>
 void SpringBatch<Dim, ScalarType>::add_cell_forces(Index group) {
     for (const Cell& cell : m_cells) {
         Node& origin = node(group, cell.corners[0]);
-        Vectors edges[Dim];
+        std::array<Vectors, Dim> sides, gradients;
         for (int a = 0; a < Dim; ++a) {
-            edges[a] = node(group, cell.corners[a + 1]).position - origin.position;
-        }
-        Vectors gradients[Dim]; // of the volume that the edges span, by their ends
-        if constexpr (Dim == 2) {
-            gradients[0] << edges[1].col(1), -edges[1].col(0);
-            gradients[1] << -edges[0].col(1), edges[0].col(0);
-        } else {
-            for (int a = 0; a < Dim; ++a) {
-                const Vectors& b = edges[(a + 1) % 3];
-                const Vectors& c = edges[(a + 2) % 3];
-                gradients[a].col(0) = b.col(1) * c.col(2) - b.col(2) * c.col(1);
-                gradients[a].col(1) = b.col(2) * c.col(0) - b.col(0) * c.col(2);
-                gradients[a].col(2) = b.col(0) * c.col(1) - b.col(1) * c.col(0);
-            }
-        }
-        Lanes volume = edges[0].col(0) * gradients[0].col(0);
-        for (int d = 1; d < Dim; ++d) {
-            volume += edges[0].col(d) * gradients[0].col(d);
-        }
-        const Lanes pressure = Cell::share * cell.stiffness * (1 - Cell::share * cell.inverse_volume * volume);
-        Vectors opposite = Vectors::Zero();
-        for (int a = 0; a < Dim; ++a) {
-            Node& corner = node(group, cell.corners[a + 1]);
+            const Vectors& end = node(group, cell.corners[a + 1]).position;
             for (int d = 0; d < Dim; ++d) {
-                const Lanes force = pressure * gradients[a].col(d);
-                corner.force.col(d) += force;
-                opposite.col(d) += force;
+                sides[a][d] = end[d] - origin.position[d];
             }
         }
-        origin.force -= opposite;
+        const Lanes volume = detail::spanned_volume<Dim>(sides, gradients);
+        const Lanes pressure = Cell::share * cell.stiffness * (Scalar(1) - Cell::share * cell.inverse_volume * volume);
+        for (int d = 0; d < Dim; ++d) {
+            Lanes opposite = Scalar(0);
+            for (int a = 0; a < Dim; ++a) {
+                const Lanes force = pressure * gradients[a][d];
+                node(group, cell.corners[a + 1]).force[d] += force;
+                opposite += force;
+            }
+            origin.force[d] -= opposite;
+        }
     }
 }
 

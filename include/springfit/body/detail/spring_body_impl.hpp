@@ -259,27 +259,27 @@ void SpringBody<Dim, ScalarType>::add_spring_forces(const std::vector<Block>& bl
 template <int Dim, std::floating_point ScalarType>
     requires SpatialDimension<Dim>
 void SpringBody<Dim, ScalarType>::add_cell_forces(const typename Packed::Domain& domain) {
-    using Lane = typename Lanes::Force;
     for (const Cell& cell : domain.cells) {
-        const auto find = [&](int corner, Lane& position) {
-            Lanes::vector(m_nodes[static_cast<std::size_t>(cell.corners[corner])].lanes, position);
+        const auto find = [&](int corner, Force& position) {
+            Lanes::vector(m_nodes[static_cast<std::size_t>(cell.corners[corner])].lanes, position.lanes);
         };
-        Lane origin, edges[Dim], gradients[Dim];
+        Force origin;
+        std::array<Force, Dim> sides, gradients;
         find(0, origin);
         for (int a = 0; a < Dim; ++a) {
-            find(a + 1, edges[a]);
-            edges[a] -= origin;
+            find(a + 1, sides[a]);
+            sides[a].lanes -= origin.lanes;
         }
-        const Scalar volume = Cell::share * Lanes::volume(edges, gradients);
+        const Scalar volume = Cell::share * detail::spanned_volume<Dim>(sides, gradients);
         const Scalar pressure = Cell::share * cell.stiffness * (1 - volume * cell.inverse_volume);
-        const auto add = [&](int corner, const Lane& force) {
+        const auto add = [&](int corner, const typename Lanes::Force& force) {
             if (cell.corners[corner] >= domain.begin && cell.corners[corner] < domain.end) {
                 m_forces[static_cast<std::size_t>(cell.corners[corner])].lanes += force;
             }
         };
-        Lane total = {};
+        typename Lanes::Force total = {};
         for (int a = 0; a < Dim; ++a) {
-            const Lane force = pressure * gradients[a];
+            const typename Lanes::Force force = pressure * gradients[a].lanes;
             add(a + 1, force);
             total += force;
         }

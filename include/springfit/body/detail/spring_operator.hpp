@@ -2,6 +2,7 @@
 #pragma once
 
 #include <springfit/body/detail/moving_nodes.hpp>
+#include <springfit/solve/conjugate_gradients.hpp>
 
 namespace springfit::detail {
 
@@ -9,10 +10,10 @@ namespace springfit::detail {
 template <int Dim, std::floating_point Real>
 struct CellTerm {
     SimplexCorners<Dim, Real> gradient; ///< sqrt(|kappa| / V_c) dV/dx
-    SimplexCorners<Dim, Real> corners;  ///< relative to the first
-    int nodes[Dim + 1];                 ///< by their numbers inside
-    Real sign = 0;                      ///< of g g'; 0 leaves it out
-    Real pressure = 0;                  ///< kappa (V - V_c) / V_c; 0 leaves its part out
+    std::array<Vector<Dim, Real>, Dim> sides;
+    int nodes[Dim + 1]; ///< by their numbers inside
+    Real sign = 0;      ///< of g g'; 0 leaves it out
+    Real pressure = 0;  ///< kappa (V - V_c) / V_c; 0 leaves its part out
 
     /// The product with displacements of the corners.
     [[nodiscard]] SimplexCorners<Dim, Real> product(const SimplexCorners<Dim, Real>& d) const {
@@ -20,19 +21,12 @@ struct CellTerm {
         if (pressure == 0) {
             return result;
         }
-        if constexpr (Dim == 2) {
-            result += pressure * volume_gradient<Dim, Real>(d);
-        } else {
-            const Vector<3, Real> a = corners.col(1), b = corners.col(2), c = corners.col(3);
-            const Vector<3, Real> da = d.col(1) - d.col(0), db = d.col(2) - d.col(0), dc = d.col(3) - d.col(0);
-            const Real factor = pressure / 6;
-            const Vector<3, Real> first = factor * (db.cross(c) + b.cross(dc));
-            const Vector<3, Real> second = factor * (dc.cross(a) + c.cross(da));
-            const Vector<3, Real> third = factor * (da.cross(b) + a.cross(db));
-            result.col(0) -= first + second + third;
-            result.col(1) += first;
-            result.col(2) += second;
-            result.col(3) += third;
+        const Real factor = pressure * simplex_share<Dim, Real>;
+        const auto change = spanned_gradient_along<Dim>(sides, sides_of<Dim, Real>(d));
+        for (int a = 0; a < Dim; ++a) {
+            const Vector<Dim, Real> force = factor * change[a];
+            result.col(a + 1) += force;
+            result.col(0) -= force;
         }
         return result;
     }
@@ -109,6 +103,8 @@ public:
     Outcome solve(const Execution& execution, Real scale, Real tolerance, int max_iterations);
 
 private:
+    struct Cg;
+
     template <class Blocks>
     static Part part(const Blocks& blocks) {
         using Source = typename Blocks::value_type;
@@ -265,66 +261,87 @@ std::array<double, 2> SpringOperator<Dim, Real>::sum(const Execution& execution,
     return total;
 }
 
+/// The passes of an iteration: x is moved and the next p made in one, r and z in another.
 template <int Dim, std::floating_point Real>
-auto SpringOperator<Dim, Real>::solve(const Execution& execution, Real scale, Real tolerance, int max_iterations)
-    -> Outcome {
+struct SpringOperator<Dim, Real>::Cg {
     using Lanes = Simd<Real, 4>;
-    // r -= alpha q, z = D^-1 r; returns r . z.
-    const auto precondition = [&](Domain& domain, Real alpha) {
+    SpringOperator& a;
+    const Execution& execution;
+    Real alpha = 0;
+    double curvature = 0; ///< p . A p
+
+    double multiply() {
+        curvature = a.sum(execution, [&](Domain& domain) { domain.sums[0] = a.multiply(domain); })[0];
+        return curvature;
+    }
+    void move(double length) { alpha = static_cast<Real>(length); }
+    [[nodiscard]] static bool is_solved() { return false; } // up to the caller
+    double precondition() {
+        return a.sum(execution, [&](Domain& domain) { precondition(domain); })[0];
+    }
+    void turn(double beta) {
+        const auto share = static_cast<Real>(beta);
+        a.sum(execution, [&](Domain& domain) { turn(domain, share); });
+    }
+
+    /// r -= alpha q, z = D^-1 r; adds up r . z.
+    void precondition(Domain& domain) {
         for (auto i = static_cast<std::size_t>(domain.begin); i < static_cast<std::size_t>(domain.end);) {
             const std::size_t last = std::min(static_cast<std::size_t>(domain.end), i + 64);
             Lanes total = {};
             for (; i < last; ++i) {
-                const Lanes r = m_r[i].lanes - alpha * m_q[i].lanes;
-                Lanes z = __builtin_shufflevector(r, r, 0, 0, 0, 0) * m_inverse[i].columns[0].lanes +
-                          __builtin_shufflevector(r, r, 1, 1, 1, 1) * m_inverse[i].columns[1].lanes;
+                const auto& inverse = a.m_inverse[i].columns;
+                const Lanes r = a.m_r[i].lanes - alpha * a.m_q[i].lanes;
+                Lanes z = __builtin_shufflevector(r, r, 0, 0, 0, 0) * inverse[0].lanes +
+                          __builtin_shufflevector(r, r, 1, 1, 1, 1) * inverse[1].lanes;
                 if constexpr (Dim == 3) {
-                    z += __builtin_shufflevector(r, r, 2, 2, 2, 2) * m_inverse[i].columns[2].lanes;
+                    z += __builtin_shufflevector(r, r, 2, 2, 2, 2) * inverse[2].lanes;
                 }
-                m_r[i].lanes = r;
-                m_z[i].lanes = z;
+                a.m_r[i].lanes = r;
+                a.m_z[i].lanes = z;
                 total += r * z;
             }
             domain.sums[0] += static_cast<double>(total[0] + total[1] + (Dim == 3 ? total[2] : Real(0)));
         }
-    };
-    // x += alpha p, p = z + beta p.
-    const auto turn = [&](const Domain& domain, Real alpha, Real beta) {
-        for (auto i = static_cast<std::size_t>(domain.begin); i < static_cast<std::size_t>(domain.end); ++i) {
-            const Lanes p = m_p[i].lanes;
-            m_x[i].lanes += alpha * p;
-            m_p[i].lanes = m_z[i].lanes + beta * p;
-        }
-    };
+    }
 
+    /// x += alpha p, p = z + share p.
+    void turn(const Domain& domain, Real share) {
+        for (auto i = static_cast<std::size_t>(domain.begin); i < static_cast<std::size_t>(domain.end); ++i) {
+            const Lanes p = a.m_p[i].lanes;
+            a.m_x[i].lanes += alpha * p;
+            a.m_p[i].lanes = a.m_z[i].lanes + share * p;
+        }
+    }
+};
+
+template <int Dim, std::floating_point Real>
+auto SpringOperator<Dim, Real>::solve(const Execution& execution, Real scale, Real tolerance, int max_iterations)
+    -> Outcome {
     Outcome outcome;
+    Cg system{*this, execution};
     double rz = sum(execution, [&](Domain& domain) {
         for (auto i = static_cast<std::size_t>(domain.begin); i < static_cast<std::size_t>(domain.end); ++i) {
             m_r[i].lanes *= scale;
             m_x[i] = m_p[i] = m_q[i] = {};
         }
-        precondition(domain, 0);
-        turn(domain, 0, 0);
+        system.precondition(domain);
+        system.turn(domain, 0);
     })[0];
     const double goal = static_cast<double>(tolerance) * static_cast<double>(tolerance) * rz;
     while (outcome.iterations < max_iterations && rz > goal) {
-        const double curvature = sum(execution, [&](Domain& domain) { domain.sums[0] = multiply(domain); })[0];
-        if (!(curvature > 0)) {
+        const double before = rz;
+        if (!cg_iteration(system, rz)) {
             outcome.indefinite = true;
             if (outcome.iterations == 0) { // downhill at least
-                const auto length = static_cast<Real>(curvature < 0 ? rz / -curvature : 1);
-                outcome.decrease = rz * static_cast<double>(length);
-                sum(execution, [&](Domain& domain) { turn(domain, length, 0); });
+                system.alpha = static_cast<Real>(system.curvature < 0 ? rz / -system.curvature : 1);
+                outcome.decrease = rz * static_cast<double>(system.alpha);
+                system.turn(0);
             }
             break;
         }
         ++outcome.iterations;
-        const auto alpha = static_cast<Real>(rz / curvature);
-        outcome.decrease += rz * rz / curvature;
-        const double before = rz;
-        rz = sum(execution, [&](Domain& domain) { precondition(domain, alpha); })[0];
-        const auto beta = static_cast<Real>(rz / before);
-        sum(execution, [&](Domain& domain) { turn(domain, alpha, beta); });
+        outcome.decrease += before * before / system.curvature;
     }
     return outcome;
 }

@@ -10,8 +10,7 @@ namespace springfit::cgal::detail {
 using Solid = Mesh<3, double, Tet4>;
 
 inline double cell_volume(const Solid& mesh, Index cell) {
-    const auto x = mesh.cell_nodes(cell);
-    return (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0)).dot(x.col(3) - x.col(0)) / 6;
+    return signed_volume<3, double>(mesh.cell_nodes(cell));
 }
 
 /// Smallest angle between two faces of a cell, degrees.

@@ -37,8 +37,7 @@ void check_result(const Mesh<3, Scalar, Tet4>& mesh, const TetrahedralizeOptions
     const std::string_view size = options.cell_size != 0 ? "cell_size" : "n_nodes";
     require(mesh.n_cells() > 0, size, "a size at which the solid holds a tetrahedron", "none");
     for (Index c = 0; c < mesh.n_cells(); ++c) {
-        const auto x = mesh.cell_nodes(c);
-        const Scalar volume = (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0)).dot(x.col(3) - x.col(0)) / 6;
+        const Scalar volume = signed_volume<3, Scalar>(mesh.cell_nodes(c));
         if (!(volume > 0)) {
             throw InvalidArgument(size, "tetrahedra of positive volume", text("volume ", volume, " in cell ", c));
         }

@@ -2,11 +2,8 @@
 #pragma once
 
 #include <cmath>
-#include <limits>
 
-#include <Eigen/SVD>
-
-#include <springfit/core/types.hpp>
+#include <springfit/mesh/polar_decomposition.hpp>
 
 namespace springfit::fem::detail {
 
@@ -31,29 +28,24 @@ Eigen::Matrix<Scalar, 3, 3> cross_matrix(const Vector<3, Scalar>& v) {
 /// J = det F; for a membrane (3 x 2) the ratio of areas |F_1 x F_2|. Derivatives up to `Order`.
 template <int Order, int Rows, int Cols, std::floating_point Scalar>
 void volume_ratio(const Eigen::Matrix<Scalar, Rows, Cols>& f, Invariant<Rows, Cols, Scalar>& j) {
-    if constexpr (Rows == 2) {
-        j.value = f(0, 0) * f(1, 1) - f(0, 1) * f(1, 0);
-        if constexpr (Order >= 1) {
-            j.gradient << f(1, 1), -f(1, 0), -f(0, 1), f(0, 0);
+    if constexpr (Rows == Cols) {
+        std::array<Vector<Rows, Scalar>, Rows> columns;
+        std::array<Vector<Rows, Scalar>, Rows> cofactors;
+        for (int k = 0; k < Rows; ++k) {
+            columns[k] = f.col(k);
         }
-        if constexpr (Order >= 2) {
+        j.value = springfit::detail::spanned_volume<Rows>(columns, cofactors);
+        if constexpr (Order >= 1) {
+            for (int k = 0; k < Rows; ++k) {
+                j.gradient.col(k) = cofactors[k];
+            }
+        }
+        if constexpr (Order >= 2 && Rows == 2) {
             j.hessian << 0, 0, 0, 1, 0, 0, -1, 0, 0, -1, 0, 0, 1, 0, 0, 0;
-        }
-    } else if constexpr (Cols == 3) {
-        const Vector<3, Scalar> a = f.col(0);
-        const Vector<3, Scalar> b = f.col(1);
-        const Vector<3, Scalar> c = f.col(2);
-        const Vector<3, Scalar> bc = b.cross(c);
-        j.value = a.dot(bc);
-        if constexpr (Order >= 1) {
-            j.gradient.col(0) = bc;
-            j.gradient.col(1) = c.cross(a);
-            j.gradient.col(2) = a.cross(b);
-        }
-        if constexpr (Order >= 2) {
-            const auto ax = cross_matrix(a);
-            const auto bx = cross_matrix(b);
-            const auto cx = cross_matrix(c);
+        } else if constexpr (Order >= 2) {
+            const auto ax = cross_matrix(columns[0]);
+            const auto bx = cross_matrix(columns[1]);
+            const auto cx = cross_matrix(columns[2]);
             j.hessian.setZero();
             j.hessian.template block<3, 3>(0, 3) = -cx;
             j.hessian.template block<3, 3>(0, 6) = bx;
@@ -83,35 +75,6 @@ void volume_ratio(const Eigen::Matrix<Scalar, Rows, Cols>& f, Invariant<Rows, Co
             j.hessian.template block<3, 3>(3, 0) += nx;
         }
     }
-}
-
-/// The rotation R of the polar decomposition F = R S, det R = 1; S is positive definite where det F > 0, else its
-/// smallest eigenvalue is negative. Newton's iteration X <- (X + X^-T) / 2 where F is well conditioned, else SVD.
-template <std::floating_point Scalar>
-Eigen::Matrix<Scalar, 3, 3> rotation_of(const Eigen::Matrix<Scalar, 3, 3>& f) {
-    using Matrix = Eigen::Matrix<Scalar, 3, 3>;
-    constexpr Scalar epsilon = std::numeric_limits<Scalar>::epsilon();
-    const Scalar size = f.norm();
-    if (f.determinant() > Scalar(1e-3) * size * size * size) {
-        Matrix x = f;
-        for (int iteration = 0; iteration < 20; ++iteration) {
-            Invariant<3, 3, Scalar> j;
-            volume_ratio<1>(x, j);
-            const Matrix next = (x + j.gradient / j.value) / 2; // X^-T = cofactor / det
-            const Scalar change = (next - x).norm();
-            x = next;
-            if (change <= 8 * epsilon) {
-                break;
-            }
-        }
-        return x;
-    }
-    const Eigen::JacobiSVD<Matrix> svd(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Matrix u = svd.matrixU();
-    if (u.determinant() * svd.matrixV().determinant() < 0) {
-        u.col(2) = -u.col(2);
-    }
-    return u * svd.matrixV().transpose();
 }
 
 /// tr S of the polar decomposition F = R S; its gradient is R. Derivatives up to `Order`.

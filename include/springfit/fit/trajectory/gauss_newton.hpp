@@ -9,6 +9,7 @@
 #include <springfit/core/progress.hpp>
 #include <springfit/core/stopwatch.hpp>
 #include <springfit/fit/trajectory/problem.hpp>
+#include <springfit/solve/conjugate_gradients.hpp>
 
 namespace springfit {
 
@@ -67,8 +68,8 @@ inline std::vector<bool> at_active_bound(const Values<double>& theta, const Valu
     return active;
 }
 
-/// Minimises 1/2 s'(H + mu I)s + gradient's over the unknowns that are not active, by preconditioned conjugate
-/// gradients.
+/// Minimises 1/2 s'(H + mu I)s + gradient's over the unknowns that are not active, by conjugate gradients with the
+/// diagonal.
 template <class Product>
 Values<double> reduced_newton_step(const Product& product, const Values<double>& diagonal, double mu,
                                    const Values<double>& gradient, const std::vector<bool>& active, double tolerance,
@@ -80,30 +81,18 @@ Values<double> reduced_newton_step(const Product& product, const Values<double>&
             }
         }
     };
-    Values<double> step = Values<double>::Zero(gradient.size());
-    Values<double> residual = -gradient;
-    reduce(residual);
-    const double goal = tolerance * residual.norm();
+    Values<double> right = -gradient;
+    reduce(right);
     Values<double> inverse = (diagonal.array() + mu).inverse();
     reduce(inverse);
-    Values<double> z = inverse.cwiseProduct(residual);
-    Values<double> direction = z;
-    double rz = residual.dot(z);
-    for (int iteration = 0; iteration < max_iterations && residual.norm() > goal; ++iteration) {
-        Values<double> image = product(direction) + mu * direction;
-        reduce(image);
-        const double curvature = direction.dot(image);
-        if (!(curvature > 0)) {
-            break;
-        }
-        const double alpha = rz / curvature;
-        step += alpha * direction;
-        residual -= alpha * image;
-        z = inverse.cwiseProduct(residual);
-        const double next = residual.dot(z);
-        direction = z + (next / rz) * direction;
-        rz = next;
-    }
+    Values<double> step;
+    (void)conjugate_gradients(
+        [&](const Values<double>& p, Values<double>& q) {
+            q = product(p) + mu * p;
+            reduce(q);
+        },
+        [&](const Values<double>& r, Values<double>& z) { z = inverse.cwiseProduct(r); }, right, step, tolerance,
+        max_iterations);
     return step;
 }
 

@@ -10,6 +10,7 @@
 
 #include <springfit/io/detail/text_scanner.hpp>
 #include <springfit/io/mesh_data.hpp>
+#include <springfit/mesh/simplex.hpp>
 
 namespace springfit::io::detail {
 
@@ -93,12 +94,14 @@ inline double MeshCollector::orientation(const MeshFile& mesh, const CellBlock& 
     const auto side = [&](int a) -> Vector<3, double> {
         return mesh.points.col(block.cells(a, cell)) - mesh.points.col(block.cells(0, cell));
     };
-    const int corners = n_corners(block.kind);
-    if (dimension(block.kind) == 2) {
-        return side(1).cross(side(corners - 1))(2);
+    const int last = n_corners(block.kind) - 1;
+    std::array<Vector<3, double>, 3> sides{side(1), side(last), {0, 0, 1}}; // in the plane
+    if (dimension(block.kind) == 3) {
+        const bool hexahedron = block.kind == CellKind::hexahedron;
+        sides = {side(1), side(hexahedron ? 3 : 2), side(hexahedron ? 4 : 3)};
     }
-    const bool hexahedron = block.kind == CellKind::hexahedron;
-    return side(1).cross(side(hexahedron ? 3 : 2)).dot(side(hexahedron ? 4 : 3));
+    std::array<Vector<3, double>, 3> gradient;
+    return springfit::detail::spanned_volume<3>(sides, gradient);
 }
 
 /// Renumbers cells that are all inside out or, in the plane, clockwise: a convention of the writer.

@@ -3,6 +3,7 @@
 
 #include <springfit/core/maximum.hpp>
 #include <springfit/ipopt/detail/scaled_quadratic.hpp>
+#include <springfit/solve/conjugate_gradients.hpp>
 
 namespace springfit::ipopt::detail {
 
@@ -73,22 +74,17 @@ private:
                 x(p) = side < 0 ? m_problem.lower(p) : m_problem.upper(p);
             }
         }
-        Values<double> rest = -mask.cwiseProduct(m_problem.gradient(x));
-        Values<double> direction = rest;
-        double square = rest.squaredNorm();
-        const double enough = 1e-32 * static_cast<double>(x.size()); // an entry of 1e-16, the largest pull being 1
-        for (int step = 0; step < max_iterations && square > enough; ++step) {
-            const Values<double> image =
-                mask.cwiseProduct(m_problem.hessian.selfadjointView<Eigen::Lower>() * direction);
-            const double curvature = direction.dot(image);
-            if (!(curvature > 0)) {
-                return;
-            }
-            x += square / curvature * direction;
-            rest -= square / curvature * image;
-            const double next = rest.squaredNorm();
-            direction = rest + next / square * direction;
-            square = next;
+        const Values<double> rest = -mask.cwiseProduct(m_problem.gradient(x));
+        if (rest.squaredNorm() > 0) {
+            const double enough = 1e-16 * std::sqrt(static_cast<double>(x.size())); // the largest pull being 1
+            Values<double> moved;
+            (void)conjugate_gradients(
+                [&](const Values<double>& p, Values<double>& q) {
+                    q = mask.cwiseProduct(m_problem.hessian.selfadjointView<Eigen::Lower>() * p);
+                },
+                [](const Values<double>& r, Values<double>& z) { z = r; }, rest, moved, enough / rest.norm(),
+                max_iterations);
+            x += moved;
         }
     }
 

@@ -3,7 +3,10 @@
 
 #include <cmath>
 
+#include <springfit/mesh/detail/measure.hpp>
+#include <springfit/mesh/element.hpp>
 #include <springfit/mesh/mesh.hpp>
+#include <springfit/mesh/simplex.hpp>
 
 namespace springfit::detail {
 
@@ -12,16 +15,6 @@ template <CellType Cell, std::floating_point Scalar>
 Scalar thickness_factor(Scalar thickness) {
     require(thickness > 0 && std::isfinite(thickness), "thickness", "a positive thickness", thickness);
     return Cell::dimension == 2 ? thickness : Scalar(1);
-}
-
-/// Volume spanned by the columns `[Dim x cell dimension]`: a signed determinant, or the area of a piece of membrane.
-template <class Jacobian>
-typename Jacobian::Scalar spanned(const Jacobian& jacobian) {
-    if constexpr (static_cast<int>(Jacobian::RowsAtCompileTime) == static_cast<int>(Jacobian::ColsAtCompileTime)) {
-        return jacobian.determinant();
-    } else {
-        return jacobian.col(0).cross(jacobian.col(1)).norm();
-    }
 }
 
 /// The share of each corner in the volume (area) of a cell: the integral of its linear, bilinear or trilinear shape
@@ -35,35 +28,26 @@ Eigen::Matrix<Scalar, Cell::n_corners, 1> corner_volumes(const Mesh<Dim, Scalar,
     bool positive = true;
     if constexpr (SimplexCell<Cell>) {
         const Eigen::Matrix<Scalar, Dim, d> sides = x.template rightCols<d>().colwise() - x.col(0);
-        const Scalar volume = spanned(sides) / (d == 2 ? 2 : 6);
+        const Scalar volume = measure(sides) * (d == 2 ? simplex_share<2, Scalar> : simplex_share<3, Scalar>);
         positive = volume > 0;
         shares.setConstant(volume / corners);
     } else {
-        // Corner (s_1, ..., s_d) in {-1, 1}^d has the shape function prod (1 + s_k xi_k) / 2.
-        constexpr int signs[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
-                                     {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
-        const Scalar gauss = 1 / std::sqrt(Scalar(3)); // two points on each axis, of weight 1
-        for (int q = 0; q < corners; ++q) {
+        using Element = fem::Element<Cell>;
+        for (const auto& point : Element::stiffness_rule) { // two points on each axis
+            const auto values = Element::values(point.xi);
+            const auto gradients = Element::gradients(point.xi);
             Eigen::Matrix<Scalar, corners, 1> shape;
-            Eigen::Matrix<Scalar, corners, d> gradient;
+            Eigen::Matrix<Scalar, corners, d> slope;
             for (int a = 0; a < corners; ++a) {
-                Scalar factors[d];
-                shape(a) = 1;
+                shape(a) = static_cast<Scalar>(values[static_cast<std::size_t>(a)]);
                 for (int k = 0; k < d; ++k) {
-                    factors[k] = (1 + static_cast<Scalar>(signs[a][k] * signs[q][k]) * gauss) / 2;
-                    shape(a) *= factors[k];
-                }
-                for (int k = 0; k < d; ++k) {
-                    gradient(a, k) = static_cast<Scalar>(signs[a][k]) / 2;
-                    for (int other = 0; other < d; ++other) {
-                        gradient(a, k) *= other == k ? Scalar(1) : factors[other];
-                    }
+                    slope(a, k) =
+                        static_cast<Scalar>(gradients[static_cast<std::size_t>(a)][static_cast<std::size_t>(k)]);
                 }
             }
-            const Eigen::Matrix<Scalar, Dim, d> jacobian = x * gradient;
-            const Scalar density = spanned(jacobian);
+            const Scalar density = measure(Eigen::Matrix<Scalar, Dim, d>(x * slope));
             positive = positive && density > 0;
-            shares += density * shape;
+            shares += static_cast<Scalar>(point.weight) * density * shape;
         }
     }
     if (!positive) {

@@ -3,31 +3,34 @@
 
 #include <limits>
 
-#include <springfit/simulate/detail/spring_potential.hpp>
+#include <springfit/simulate/detail/network_potential.hpp>
 #include <springfit/solve/corotated_solver.hpp>
 
 namespace springfit::detail {
 
-/// Added to the diagonal of the Hessian, relative to its largest entry, where no spring may hold a node.
+/// Added to the diagonal of the Hessian, relative to its largest entry, where nothing may hold a node.
 inline constexpr double statics_floor = 1e-9;
 
 /// What the equilibria of a network under the same clamps have in common: the pattern of the stiffness and its factor
 /// at rest. Immutable, so threads may share it. Keeps a reference to the network.
-template <int Dim, std::floating_point Scalar>
+template <class Network>
 class ClampedStiffness {
 public:
-    ClampedStiffness(const SpringNetwork<Dim, Scalar>& network, const std::vector<int>& clamped);
+    static constexpr int Dim = Network::dimension;
+    using Scalar = typename Network::Scalar;
 
-    [[nodiscard]] const SpringNetwork<Dim, Scalar>& network() const { return m_network; }
+    ClampedStiffness(const Network& network, const std::vector<int>& clamped);
+
+    [[nodiscard]] const Network& network() const { return m_network; }
     [[nodiscard]] const FreeNodes& free_nodes() const { return m_potential.free_nodes(); }
     /// To copy: its pattern is made, its forces are not set.
-    [[nodiscard]] const SpringPotential<Dim, Scalar>& potential() const { return m_potential; }
-    /// Of the stiffness at rest; not usable where the springs do not hold the rest shape.
+    [[nodiscard]] const NetworkPotential<Network>& potential() const { return m_potential; }
+    /// Of the stiffness at rest; not usable where the network does not hold its rest shape.
     [[nodiscard]] const CorotatedPreconditioner<Dim, Scalar>& factor() const { return m_factor; }
 
 private:
-    const SpringNetwork<Dim, Scalar>& m_network;
-    SpringPotential<Dim, Scalar> m_potential;
+    const Network& m_network;
+    NetworkPotential<Network> m_potential;
     CorotatedPreconditioner<Dim, Scalar> m_factor;
 };
 

@@ -5,9 +5,8 @@
 
 namespace springfit::detail {
 
-template <int Dim, std::floating_point Scalar>
-ClampedStiffness<Dim, Scalar>::ClampedStiffness(const SpringNetwork<Dim, Scalar>& network,
-                                                const std::vector<int>& clamped)
+template <class Network>
+ClampedStiffness<Network>::ClampedStiffness(const Network& network, const std::vector<int>& clamped)
     : m_network(network), m_potential(network, FreeNodes(network.n_nodes(), clamped)) {
     const Points<Dim, Scalar> unloaded = Points<Dim, Scalar>::Zero(Dim, network.n_nodes());
     auto at_rest = m_potential;
@@ -17,7 +16,7 @@ ClampedStiffness<Dim, Scalar>::ClampedStiffness(const SpringNetwork<Dim, Scalar>
         at_rest.set_exact_below(curvature == HessianForm::exact ? std::numeric_limits<Scalar>::infinity() : Scalar(-1));
         Values<Scalar> gradient(x.size());
         at_rest.gradient(x, gradient);
-        m_factor = CorotatedPreconditioner<Dim, Scalar>(at_rest.hessian(x), free_nodes(), network.springs,
+        m_factor = CorotatedPreconditioner<Dim, Scalar>(at_rest.hessian(x), free_nodes(), neighbours(network),
                                                         network.rest_positions);
         if (m_factor.is_usable()) {
             return;

@@ -71,9 +71,9 @@ void NetworkStatics<Dim, Scalar>::prepare_linear() {
     }
     m_is_linear_ready = true;
     m_free = FreeNodes(m_network.n_nodes(), m_clamped);
-    m_full = spring_matrix(m_network, FreeNodes(m_network.n_nodes(), {}));
+    m_full = network_matrix(m_network, FreeNodes(m_network.n_nodes(), {}));
     add_stiffness<Dim, Scalar>(m_network, m_network.rest_positions, HessianForm::exact, m_full);
-    m_held = spring_matrix(m_network, m_free);
+    m_held = network_matrix(m_network, m_free);
     add_stiffness<Dim, Scalar>(m_network, m_network.rest_positions, HessianForm::exact, m_held);
     m_solver.reset();
     m_solver.set_max_diagonal_iterations(0);

@@ -10,9 +10,9 @@ bool CorotatedSolver<Dim, Scalar>::solve(const SymmetricMatrix<Scalar>& a, const
                                          Scalar tolerance) {
     m_met_negative_curvature = false;
     if (m_factor.is_usable() && m_n_slow < 2) {
-        const auto outcome =
-            conjugate_gradients(a, b, x, tolerance, max_iterations,
-                                [&](const Values<Scalar>& r, Values<Scalar>& z) { m_factor.apply(r, z); });
+        const auto outcome = conjugate_gradients(
+            [&](const Values<Scalar>& p, Values<Scalar>& q) { a.multiply(p, q); },
+            [&](const Values<Scalar>& r, Values<Scalar>& z) { m_factor.apply(r, z); }, b, x, tolerance, max_iterations);
         if (outcome == CgOutcome::solved) {
             m_n_slow = 0;
             return true;

@@ -8,18 +8,19 @@ namespace springfit {
 template <std::floating_point Scalar>
 bool SymmetricSolver<Scalar>::solve(const SymmetricMatrix<Scalar>& a, const Values<Scalar>& b, Values<Scalar>& x,
                                     Scalar tolerance) {
+    const auto multiply = [&](const Values<Scalar>& p, Values<Scalar>& q) { a.multiply(p, q); };
     if (m_factorised && m_max_cg_iterations > 0 &&
-        conjugate_gradients(a, b, x, tolerance, m_max_cg_iterations, [&](const Values<Scalar>& r, Values<Scalar>& z) {
-            z = apply_factor(r);
-        }) == CgOutcome::solved) {
+        conjugate_gradients(
+            multiply, [&](const Values<Scalar>& r, Values<Scalar>& z) { z = apply_factor(r); }, b, x, tolerance,
+            m_max_cg_iterations) == CgOutcome::solved) {
         return true;
     }
     m_factorised = false; // too far away by now
     if (m_max_diagonal_iterations > 0) {
         const Values<Scalar> inverse = a.diagonal().unaryExpr([](Scalar d) { return d > 0 ? 1 / d : Scalar(1); });
-        const auto outcome =
-            conjugate_gradients(a, b, x, tolerance, m_max_diagonal_iterations,
-                                [&](const Values<Scalar>& r, Values<Scalar>& z) { z = inverse.cwiseProduct(r); });
+        const auto outcome = conjugate_gradients(
+            multiply, [&](const Values<Scalar>& r, Values<Scalar>& z) { z = inverse.cwiseProduct(r); }, b, x, tolerance,
+            m_max_diagonal_iterations);
         if (outcome == CgOutcome::solved || (outcome == CgOutcome::indefinite && b.dot(x) > 0)) {
             return true;
         }

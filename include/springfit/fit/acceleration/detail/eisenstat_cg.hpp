@@ -2,6 +2,7 @@
 #pragma once
 
 #include <springfit/fit/acceleration/detail/symmetric_gauss_seidel.hpp>
+#include <springfit/solve/conjugate_gradients.hpp>
 
 namespace springfit::detail {
 
@@ -41,8 +42,21 @@ public:
         m_share = 0;
     }
 
-    /// False, with nothing done, where rounding shows A not to be positive definite.
+    /// False, with the step as it was, where rounding shows A not to be positive definite.
     bool iterate() {
+        double square = static_cast<double>(m_diagonal) * m_now.square;
+        return cg_iteration(*this, square);
+    }
+
+    /// Writes the step so far `[n_unknowns]`, and goes on from there with a step of 0.
+    void take_step(Values<double>& step) {
+        m_sweeps.scatter(m_step, m_unit, step);
+        m_step.setZero();
+    }
+
+    // The passes of an iteration. What preconditions is in the sweeps; the next direction is made in the first of them.
+
+    double multiply() {
         const auto d = m_diagonal;
         const auto sums = m_sweeps.solve_upper(
             d,
@@ -51,27 +65,23 @@ public:
             },
             m_direction);
         const double curvature = 2 * sums.xb - d * sums.xx;
-        if (!(curvature > 0)) {
-            return false;
+        if (curvature > 0) {
+            m_sweeps.solve_lower(
+                d, [&](Index u) -> Lanes { return lanes(m_conjugate, u) - d * lanes(m_direction, u); }, m_image);
         }
-        m_sweeps.solve_lower(
-            d, [&](Index u) -> Lanes { return lanes(m_conjugate, u) - d * lanes(m_direction, u); }, m_image);
-        const double square = m_now.square;
-        const auto length = static_cast<Scalar>(d * square / curvature);
+        return curvature;
+    }
+    void move(double alpha) {
+        const auto length = static_cast<Scalar>(alpha);
         m_now = measured_after([&](Index begin, Index count) {
             const auto direction = m_direction.segment(begin, count);
             m_step.segment(begin, count) += length * direction;
             m_residual.segment(begin, count) -= length * (direction + m_image.segment(begin, count));
         });
-        m_share = static_cast<Scalar>(m_now.square / square);
-        return true;
     }
-
-    /// Writes the step so far `[n_unknowns]`, and goes on from there with a step of 0.
-    void take_step(Values<double>& step) {
-        m_sweeps.scatter(m_step, m_unit, step);
-        m_step.setZero();
-    }
+    [[nodiscard]] static bool is_solved() { return false; } // up to the caller
+    double precondition() { return static_cast<double>(m_diagonal) * m_now.square; }
+    void turn(double beta) { m_share = static_cast<Scalar>(beta); }
 
 private:
     using Lanes = typename Sweeps::Lanes;
@@ -82,9 +92,7 @@ private:
         double largest = 0;
     };
 
-    static Eigen::Map<Lanes> lanes(Values<Scalar>& values, Index begin) {
-        return Eigen::Map<Lanes>(values.data() + begin);
-    }
+    static Lanes& lanes(Values<Scalar>& values, Index begin) { return Lanes::at(values.data() + begin); }
 
     /// Calls `body(begin, count)` for all chunks of places and measures r of each afterwards, while the caches still
     /// hold it.

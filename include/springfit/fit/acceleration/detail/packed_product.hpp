@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <springfit/core/lanes.hpp>
 #include <springfit/core/types.hpp>
 
 namespace springfit::detail {
@@ -15,11 +16,9 @@ namespace springfit::detail {
 /// x and y have `packed_room(n)` entries; those of x behind n are 0, those of y come out with anything. Four columns at
 /// a time, so that the rows below their diagonal block are read and written once: an axpy down and a dot across.
 inline void packed_product(const double* a, Index n, const double* x, double* y) {
-    using Packet = Eigen::Array<double, 4, 1>;
-    using In = Eigen::Map<const Packet>;
-    using Out = Eigen::Map<Packet>;
+    using Four = Lanes<double, 4>;
     for (Index p = 0; p < n; p += 4) {
-        Out(y + p).setZero();
+        Four::at(y + p) = 0.;
     }
     Index q = 0;
     for (; q + 4 <= n; q += 4) {
@@ -32,33 +31,32 @@ inline void packed_product(const double* a, Index n, const double* x, double* y)
         const double x1 = x[q + 1];
         const double x2 = x[q + 2];
         const double x3 = x[q + 3];
-        Packet own(c0[0] * x0 + c0[1] * x1 + c0[2] * x2 + c0[3] * x3, c0[1] * x0 + c1[0] * x1 + c1[1] * x2 + c1[2] * x3,
-                   c0[2] * x0 + c1[1] * x1 + c2[0] * x2 + c2[1] * x3,
-                   c0[3] * x0 + c1[2] * x1 + c2[1] * x2 + c3[0] * x3);
+        Four own(c0[0] * x0 + c0[1] * x1 + c0[2] * x2 + c0[3] * x3, c0[1] * x0 + c1[0] * x1 + c1[1] * x2 + c1[2] * x3,
+                 c0[2] * x0 + c1[1] * x1 + c2[0] * x2 + c2[1] * x3, c0[3] * x0 + c1[2] * x1 + c2[1] * x2 + c3[0] * x3);
         if (q + 5 == n) { // one row below, where four lanes would reach behind the triangle
-            const Packet across(c0[4], c1[3], c2[2], c3[1]);
-            y[q + 4] += (across * In(x + q)).sum();
+            const Four across(c0[4], c1[3], c2[2], c3[1]);
+            y[q + 4] += (across * Four::at(x + q)).sum();
             own += across * x[q + 4];
         } else if (q + 5 < n) {
-            Packet s0 = Packet::Zero();
-            Packet s1 = Packet::Zero();
-            Packet s2 = Packet::Zero();
-            Packet s3 = Packet::Zero();
+            Four s0 = 0.;
+            Four s1 = 0.;
+            Four s2 = 0.;
+            Four s3 = 0.;
             for (Index p = q + 4; p < n; p += 4) {
-                const Packet below = In(x + p);
-                const Packet h0 = In(c0 + (p - q));
-                const Packet h1 = In(c1 + (p - q - 1));
-                const Packet h2 = In(c2 + (p - q - 2));
-                const Packet h3 = In(c3 + (p - q - 3));
-                Out(y + p) += (h0 * x0 + h1 * x1) + (h2 * x2 + h3 * x3);
+                const Four below = Four::at(x + p);
+                const Four h0 = Four::at(c0 + (p - q));
+                const Four h1 = Four::at(c1 + (p - q - 1));
+                const Four h2 = Four::at(c2 + (p - q - 2));
+                const Four h3 = Four::at(c3 + (p - q - 3));
+                Four::at(y + p) += (h0 * x0 + h1 * x1) + (h2 * x2 + h3 * x3);
                 s0 += h0 * below;
                 s1 += h1 * below;
                 s2 += h2 * below;
                 s3 += h3 * below;
             }
-            own += Packet(s0.sum(), s1.sum(), s2.sum(), s3.sum());
+            own += Four(s0.sum(), s1.sum(), s2.sum(), s3.sum());
         }
-        Out(y + q) += own;
+        Four::at(y + q) += own;
     }
     for (; q < n; ++q) {
         double sum = *a++ * x[q];

@@ -177,40 +177,50 @@ private:
         return outcome;
     }
 
-    Outcome by_factor(const Unknowns& weight, double target, Unknowns& theta, Unknowns& gradient, int max_iterations) {
+    /// The passes of conjugate gradients with the factor; the residual is minus the gradient of what moves.
+    struct FactorCg {
+        ReducedSolver& solver;
+        const Unknowns& weight;
+        double target;
+        Unknowns& theta;
+        Unknowns& gradient;
         double size = largest(weight, gradient);
-        double square = 0;
-        double first = 0;
-        for (int i = 0; size > target; ++i) {
-            if (i == max_iterations) {
-                return Outcome::slow;
-            }
-            m_moved = (weight.array() > 0).select(gradient, 0.);
-            m_factor->solve(m_moved, m_preconditioned);
-            m_preconditioned = (weight.array() > 0).select(m_preconditioned, 0.);
-            const double before = square;
-            square = m_preconditioned.dot(gradient);
-            first = i == 0 ? square : first;
-            if (!(square > 1e-30 * first)) {
-                break; // rounding
-            }
-            if (i == 0) {
-                m_direction = -m_preconditioned;
-            } else {
-                m_direction = square / before * m_direction - m_preconditioned;
-            }
-            const double curvature = multiply(m_direction, m_image);
-            if (!(curvature > 0)) {
-                break;
-            }
-            theta += square / curvature * m_direction;
-            gradient += square / curvature * m_image;
+
+        double multiply() { return solver.multiply(solver.m_direction, solver.m_image); }
+        void move(double alpha) {
+            theta += alpha * solver.m_direction;
+            gradient += alpha * solver.m_image;
             size = largest(weight, gradient);
+        }
+        [[nodiscard]] bool is_solved() const { return size <= target; }
+        double precondition() {
+            Unknowns& z = solver.m_preconditioned;
+            solver.m_moved = (weight.array() > 0).select(gradient, 0.);
+            solver.m_factor->solve(solver.m_moved, z);
+            z = (weight.array() > 0).select(z, 0.);
+            return z.dot(gradient);
+        }
+        void turn(double beta) { solver.m_direction = beta * solver.m_direction - solver.m_preconditioned; }
+    };
+
+    Outcome by_factor(const Unknowns& weight, double target, Unknowns& theta, Unknowns& gradient, int max_iterations) {
+        FactorCg system{*this, weight, target, theta, gradient};
+        if (system.is_solved()) {
+            return Outcome::solved;
+        }
+        m_direction = Unknowns::Zero(theta.size());
+        double rz = system.precondition();
+        system.turn(0);
+        const double rounding = 1e-30 * rz;
+        for (int i = 0; i < max_iterations; ++i) {
+            if (!(rz > rounding) || !cg_iteration(system, rz) || system.is_solved()) {
+                return Outcome::solved; // as near as rounding lets it
+            }
             if (!m_go_on()) {
                 return Outcome::stopped;
             }
         }
-        return Outcome::solved;
+        return Outcome::slow;
     }
 
     const Objective& m_objective;

@@ -6,6 +6,7 @@
 #include <span>
 
 #include <springfit/core/execution.hpp>
+#include <springfit/core/lanes.hpp>
 #include <springfit/fit/acceleration/node_quadratic.hpp>
 #include <springfit/solve/locality.hpp>
 
@@ -58,7 +59,7 @@ public:
         }
     }
 
-    /// What a solve comes by on its way.
+    /// Inner products accumulated by a sweep.
     struct Sums {
         double xb = 0; ///< x' b
         double xx = 0; ///< x' x
@@ -86,7 +87,7 @@ public:
     }
 
     static constexpr Index lanes = 64 / static_cast<Index>(sizeof(Scalar));
-    using Lanes = Eigen::Array<Scalar, lanes, 1>;
+    using Lanes = detail::Lanes<Scalar, static_cast<int>(lanes)>;
 
 private:
     static constexpr Index slices_per_chunk = 64;
@@ -109,29 +110,29 @@ private:
         const Index n_slices = m_colours[colour + 1] / lanes - first;
         m_partial.resize(static_cast<std::size_t>(Execution::n_chunks(n_slices, slices_per_chunk)));
         m_execution.for_chunks(n_slices, slices_per_chunk, [&](Index chunk, Index begin, Index end) {
-            Lanes xb = Lanes::Zero();
-            Lanes xx = Lanes::Zero();
+            Lanes xb = Scalar(0);
+            Lanes xx = Scalar(0);
             for (Index slice = first + begin; slice < first + end; ++slice) {
                 const auto from = static_cast<std::size_t>(triangle.begin[static_cast<std::size_t>(slice)]);
                 const auto to = static_cast<std::size_t>(triangle.begin[static_cast<std::size_t>(slice) + 1]);
                 const Scalar* values = triangle.values.data() + from;
-                Lanes product = Lanes::Zero();
+                Lanes product = Scalar(0);
                 for (const int* places = triangle.places.data() + from; places != triangle.places.data() + to;
                      places += lanes, values += lanes) {
                     Lanes there;
-                    for (Index l = 0; l < lanes; ++l) {
+                    for (int l = 0; l < lanes; ++l) {
                         there(l) = x.data()[places[l]];
                     }
-                    product += Eigen::Map<const Lanes>(values) * there;
+                    product += Lanes::at(values) * there;
                 }
                 const Lanes b = right_side(slice * lanes);
-                const Lanes own = inverse * Eigen::Map<const Lanes>(m_free.data() + slice * lanes) * (b - product);
-                Eigen::Map<Lanes>(x.data() + slice * lanes) = own;
+                const Lanes own = inverse * Lanes::at(m_free.data() + slice * lanes) * (b - product);
+                Lanes::at(x.data() + slice * lanes) = own;
                 xb += own * b;
                 xx += own * own;
             }
-            m_partial[static_cast<std::size_t>(chunk)] = {std::accumulate(xb.begin(), xb.end(), 0.),
-                                                          std::accumulate(xx.begin(), xx.end(), 0.)};
+            m_partial[static_cast<std::size_t>(chunk)] = {std::accumulate(xb.lane, xb.lane + lanes, 0.),
+                                                          std::accumulate(xx.lane, xx.lane + lanes, 0.)};
         });
         Sums total;
         for (const Sums& sums : m_partial) {

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
-#include <springfit/fit/trajectory/detail/corotated_block_preconditioner.hpp>
+#include <springfit/fit/trajectory/detail/spring_block.hpp>
+#include <springfit/solve/conjugate_gradients.hpp>
+#include <springfit/solve/corotated_block_preconditioner.hpp>
 
 namespace springfit::detail {
 
@@ -54,6 +57,11 @@ struct ImplicitSystem {
         for (int node : clamped) {
             block.middleRows<Dim>(Dim * node).setZero();
         }
+    }
+
+    /// The factor turned with the body to the positions y.
+    [[nodiscard]] CorotatedBlockPreconditioner<Dim> preconditioner(const ColumnBlock& y) const {
+        return {factor, network.springs, network.rest_positions, y};
     }
 
     [[nodiscard]] bool is_damped() const { return damping > 0 && (network.damping.array() > 0).any(); }
@@ -111,66 +119,110 @@ struct ImplicitSystem {
     }
 };
 
+/// The system of `block_conjugate_gradients`: one right-hand side per column. A column that is solved or met
+/// negative curvature is out of it, and its solution stays.
+template <class Factor, class Multiply>
+class ColumnCg {
+public:
+    ColumnCg(const Factor& factor, const Multiply& multiply, const ColumnBlock& right, double tolerance,
+             ColumnBlock& solution)
+        : m_factor(factor), m_multiply(multiply), m_goal(tolerance * column_dots(right, right).sqrt()),
+          m_solution(solution), m_residual(right), m_active(static_cast<std::size_t>(right.cols()), 1) {
+        m_solution.setZero(right.rows(), right.cols());
+    }
+
+    /// z and p at the start; r . z, or 0 where a column has nothing to solve.
+    Eigen::ArrayXd start() {
+        Eigen::ArrayXd rz = precondition();
+        m_direction = m_z;
+        for (Index c = 0; c < rz.size(); ++c) {
+            m_active[static_cast<std::size_t>(c)] = rz(c) > 0 ? 1 : 0;
+        }
+        return rz;
+    }
+
+    /// No column has met negative curvature.
+    [[nodiscard]] bool is_definite() const { return m_is_definite; }
+
+    Eigen::ArrayXd multiply() {
+        m_multiply(m_direction, m_product);
+        Eigen::ArrayXd curvature = column_dots(m_direction, m_product);
+        for (Index c = 0; c < curvature.size(); ++c) {
+            if (is_active(c) && !(curvature(c) > 0)) {
+                m_is_definite = false;
+                m_active[static_cast<std::size_t>(c)] = 0;
+                if (!m_has_moved) {
+                    m_solution.col(c) = m_direction.col(c);
+                }
+            }
+            curvature(c) = is_active(c) ? curvature(c) : std::numeric_limits<double>::infinity();
+        }
+        return curvature;
+    }
+
+    void move(const Eigen::ArrayXd& alpha) {
+        m_has_moved = true;
+        const Eigen::ArrayXd length = of_active(alpha);
+        add_scaled(m_direction, length, 1, m_solution);
+        add_scaled(m_product, length, -1, m_residual);
+        const Eigen::ArrayXd left = column_dots(m_residual, m_residual).sqrt();
+        for (Index c = 0; c < left.size(); ++c) {
+            if (!(left(c) > m_goal(c))) {
+                m_active[static_cast<std::size_t>(c)] = 0;
+            }
+        }
+    }
+
+    [[nodiscard]] bool is_solved() const { return std::find(m_active.begin(), m_active.end(), 1) == m_active.end(); }
+
+    Eigen::ArrayXd precondition() {
+        m_factor.solve(m_residual, m_z);
+        return column_dots(m_residual, m_z);
+    }
+
+    void turn(const Eigen::ArrayXd& beta) {
+        const Eigen::ArrayXd share = of_active(beta);
+        for_lanes(m_direction, [&](Index row, Index column) {
+            lanes(m_direction, row, column) =
+                lanes(m_z, row, column) + lanes(m_direction, row, column) * lanes(share, column);
+        });
+    }
+
+private:
+    [[nodiscard]] bool is_active(Index column) const { return m_active[static_cast<std::size_t>(column)] != 0; }
+
+    /// 0 for the columns that are out.
+    [[nodiscard]] Eigen::ArrayXd of_active(Eigen::ArrayXd values) const {
+        for (Index c = 0; c < values.size(); ++c) {
+            values(c) = is_active(c) ? values(c) : 0.;
+        }
+        return values;
+    }
+
+    const Factor& m_factor;
+    const Multiply& m_multiply;
+    Eigen::ArrayXd m_goal; ///< largest |r| of a column that is solved
+    ColumnBlock& m_solution;
+    ColumnBlock m_residual, m_z, m_direction, m_product;
+    std::vector<char> m_active;
+    bool m_is_definite = true;
+    bool m_has_moved = false;
+};
+
 /// Conjugate gradients on every column at once, until |residual| <= tolerance |right| in each. False where some column
 /// met negative curvature or did not converge; its solution is then the iterate before, a direction of descent.
 template <class Factor, class Multiply>
-bool conjugate_gradients(const Factor& factor, const Multiply& multiply, const ColumnBlock& right, double tolerance,
-                         int max_iterations, ColumnBlock& solution) {
-    const Index n = right.cols();
-    const Eigen::ArrayXd squares = column_dots(right, right);
-    solution.setZero(right.rows(), n);
-    ColumnBlock residual = right;
-    ColumnBlock z;
-    factor.solve(residual, z);
-    ColumnBlock direction = z;
-    ColumnBlock product;
-    Eigen::ArrayXd rz = column_dots(residual, z);
-    std::vector<char> active(static_cast<std::size_t>(n));
-    std::transform(rz.begin(), rz.end(), active.begin(), [](double square) { return square > 0 ? 1 : 0; });
-    const auto any_active = [&] { return std::find(active.begin(), active.end(), 1) != active.end(); };
-    Eigen::ArrayXd share(n); // of the direction: in the step, then in the next direction
-    bool definite = true;
-    for (int iteration = 0; any_active(); ++iteration) {
+bool block_conjugate_gradients(const Factor& factor, const Multiply& multiply, const ColumnBlock& right,
+                               double tolerance, int max_iterations, ColumnBlock& solution) {
+    ColumnCg<Factor, Multiply> system(factor, multiply, right, tolerance, solution);
+    Eigen::ArrayXd rz = system.start();
+    for (int iteration = 0; !system.is_solved(); ++iteration) {
         if (iteration == max_iterations) {
             return false;
         }
-        multiply(direction, product);
-        const Eigen::ArrayXd curvature = column_dots(direction, product);
-        for (Index c = 0; c < n; ++c) {
-            char& is_active = active[static_cast<std::size_t>(c)];
-            if (is_active != 0 && !(curvature(c) > 0)) {
-                definite = false;
-                is_active = 0;
-                if (iteration == 0) {
-                    solution.col(c) = direction.col(c);
-                }
-            }
-            share(c) = is_active != 0 ? rz(c) / curvature(c) : 0.;
-        }
-        add_scaled(direction, share, 1, solution);
-        add_scaled(product, share, -1, residual);
-        const Eigen::ArrayXd left = column_dots(residual, residual);
-        for (Index c = 0; c < n; ++c) {
-            if (!(std::sqrt(left(c)) > tolerance * std::sqrt(squares(c)))) {
-                active[static_cast<std::size_t>(c)] = 0;
-            }
-        }
-        if (!any_active()) {
-            break;
-        }
-        factor.solve(residual, z);
-        const Eigen::ArrayXd next = column_dots(residual, z);
-        for (Index c = 0; c < n; ++c) {
-            const bool is_active = active[static_cast<std::size_t>(c)] != 0;
-            share(c) = is_active ? next(c) / rz(c) : 0.;
-            rz(c) = is_active ? next(c) : rz(c);
-        }
-        for_lanes(direction, [&](Index row, Index column) {
-            lanes(direction, row, column) =
-                lanes(z, row, column) + lanes(direction, row, column) * lanes(share, column);
-        });
+        (void)cg_iteration(system, rz); // columns that cannot go on are out
     }
-    return definite;
+    return system.is_definite();
 }
 
 /// Solves an implicit system for all columns by Newton's method with a line search, from `y` as it stands (clamped
@@ -203,9 +255,9 @@ bool solve_implicit(const ImplicitSystem<Dim>& system, const ColumnBlock& target
         if (!any_above(unbalanced, 1, goal)) {
             return true;
         }
-        const CorotatedBlockPreconditioner<Dim> factor(system.network, system.factor, y);
+        const auto factor = system.preconditioner(y);
         const auto newton_step = [&](HessianForm curvature) {
-            return conjugate_gradients(
+            return block_conjugate_gradients(
                 factor, [&](const ColumnBlock& p, ColumnBlock& q) { system.multiply(y, old, curvature, p, q); }, force,
                 1e-2, 100, direction);
         };

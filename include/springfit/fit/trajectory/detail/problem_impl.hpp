@@ -103,7 +103,7 @@ std::size_t TrajectoryProblem<Dim>::group_of(const std::vector<int>& clamped, do
     }
     FreeNodes free(m_parameters.prior().n_nodes(), clamped);
     require(free.n_free() > 0, "motions", "nodes that are free to move", "none");
-    auto pattern = spring_matrix(m_parameters.prior(), free);
+    auto pattern = network_matrix(m_parameters.prior(), free);
     const Points<Dim, double> none = Points<Dim, double>::Zero(Dim, free.n_nodes());
     m_groups.push_back({clamped, std::move(free), step, std::move(pattern), none});
     return m_groups.size() - 1;

@@ -3,38 +3,13 @@
 
 #include <array>
 
-#include <springfit/fit/trajectory/detail/column_lanes.hpp>
 #include <springfit/fit/trajectory/parameters.hpp>
 #include <springfit/network/forces.hpp>
+#include <springfit/solve/column_lanes.hpp>
 
 /// The forces of a network and their derivatives for several motions of it at once: all blocks are over all nodes
 /// `[Dim * n_nodes x n_columns]`, one column per motion.
 namespace springfit::detail {
-
-template <int Dim>
-using LaneVector = std::array<ColumnLanes, Dim>;
-
-template <int Dim>
-ColumnLanes dot(const LaneVector<Dim>& a, const LaneVector<Dim>& b) {
-    ColumnLanes sum = a[0] * b[0];
-    for (int d = 1; d < Dim; ++d) {
-        sum += a[d] * b[d];
-    }
-    return sum;
-}
-
-inline LaneVector<3> cross(const LaneVector<3>& a, const LaneVector<3>& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-template <int Dim>
-LaneVector<Dim> difference(const ColumnBlock& block, int j, int i, Index column) {
-    LaneVector<Dim> result;
-    for (int d = 0; d < Dim; ++d) {
-        result[d] = lanes(block, Dim * j + d, column) - lanes(block, Dim * i + d, column);
-    }
-    return result;
-}
 
 /// Adds `force` to node i and takes it from node j.
 template <int Dim>
@@ -43,15 +18,6 @@ void add_pair(ColumnBlock& forces, int i, int j, Index column, const LaneVector<
         lanes(forces, Dim * i + d, column) += force[d];
         lanes(forces, Dim * j + d, column) -= force[d];
     }
-}
-
-template <int Dim>
-LaneVector<Dim> scaled(const ColumnLanes& factor, const LaneVector<Dim>& v) {
-    LaneVector<Dim> result;
-    for (int d = 0; d < Dim; ++d) {
-        result[d] = factor * v[d];
-    }
-    return result;
 }
 
 /// Length and direction of a spring in each lane.
@@ -82,33 +48,19 @@ struct CellLanes {
         for (int a = 0; a < Dim; ++a) {
             sides[a] = difference<Dim>(positions, corners(a + 1), corners(0), column);
         }
-        if constexpr (Dim == 2) {
-            gradient[0] = {sides[1][1] / 2, -sides[1][0] / 2};
-            gradient[1] = {-sides[0][1] / 2, sides[0][0] / 2};
-        } else {
-            for (int a = 0; a < 3; ++a) {
-                gradient[a] = scaled<3>(1. / 6, cross(sides[(a + 1) % 3], sides[(a + 2) % 3]));
-            }
+        volume = share * spanned_volume<Dim>(sides, gradient);
+        for (auto& by_side : gradient) {
+            by_side = scaled<Dim>(share, by_side);
         }
-        volume = dot<Dim>(sides[0], gradient[0]);
     }
 
     /// How the gradient changes when the sides change by `moved`.
     [[nodiscard]] std::array<LaneVector<Dim>, Dim> gradient_along(const std::array<LaneVector<Dim>, Dim>& moved) const {
-        std::array<LaneVector<Dim>, Dim> result;
-        if constexpr (Dim == 2) {
-            result[0] = {moved[1][1] / 2, -moved[1][0] / 2};
-            result[1] = {-moved[0][1] / 2, moved[0][0] / 2};
-        } else {
-            for (int a = 0; a < 3; ++a) {
-                const auto first = cross(moved[(a + 1) % 3], sides[(a + 2) % 3]);
-                const auto second = cross(sides[(a + 1) % 3], moved[(a + 2) % 3]);
-                for (int d = 0; d < 3; ++d) {
-                    result[a][d] = (first[d] + second[d]) / 6;
-                }
-            }
+        auto change = spanned_gradient_along<Dim>(sides, moved);
+        for (auto& by_side : change) {
+            by_side = scaled<Dim>(share, by_side);
         }
-        return result;
+        return change;
     }
 
     /// The change of the volume when the sides change by `moved`.
@@ -119,6 +71,9 @@ struct CellLanes {
         }
         return sum;
     }
+
+private:
+    static constexpr double share = simplex_share<Dim, double>;
 };
 
 /// The sides of a cell in a block of displacements.

@@ -79,7 +79,7 @@ public:
                 }
             }
             misfit = weighted_square(residual(y, 0));
-            tape.turned.emplace_back(m_system.network, m_system.factor, y);
+            tape.turned.push_back(m_system.preconditioner(y));
             tape.positions.push_back(std::move(y));
             return true;
         }
@@ -117,8 +117,7 @@ public:
         return backwards(
             tape, [&](const ColumnBlock& state, Index frame) { return weighted(residual(state, frame)); },
             [&](const ColumnBlock& y, const ColumnBlock& x, const ColumnBlock& right, ColumnBlock& z) {
-                return solve(CorotatedBlockPreconditioner<Dim>(m_system.network, m_system.factor, y), y, x, right,
-                             exactly, z);
+                return solve(m_system.preconditioner(y), y, x, right, exactly, z);
             },
             true, derivative);
     }
@@ -128,8 +127,7 @@ public:
     void add_product(WindowTape<Dim>& tape, const NetworkValues& change, NetworkValues& derivative) const {
         const auto solve_step = [&](const ColumnBlock& y, const ColumnBlock& x, const ColumnBlock& right,
                                     ColumnBlock& z) {
-            (void)solve(CorotatedBlockPreconditioner<Dim>(m_system.network, m_system.factor, y), y, x, right, loosely,
-                        z);
+            (void)solve(m_system.preconditioner(y), y, x, right, loosely, z);
             return true;
         };
         if (m_windows.frames == 0) {
@@ -275,7 +273,7 @@ private:
     [[nodiscard]] bool solve(const CorotatedBlockPreconditioner<Dim>& factor, const ColumnBlock& y,
                              const ColumnBlock& old, const ColumnBlock& right, const Precision& precision,
                              ColumnBlock& z) const {
-        return conjugate_gradients(
+        return block_conjugate_gradients(
             factor, [&](const ColumnBlock& p, ColumnBlock& q) { m_system.multiply(y, old, HessianForm::exact, p, q); },
             right, precision.tolerance, precision.max_iterations, z);
     }
@@ -299,8 +297,7 @@ private:
                     add_damping_parameter_forces<Dim>(m_system.network, change, x, m_system.damping * (y - x), force);
                 }
                 m_system.hold(force);
-                (void)solve(CorotatedBlockPreconditioner<Dim>(m_system.network, m_system.factor, y), y, x, force,
-                            loosely, dy);
+                (void)solve(m_system.preconditioner(y), y, x, force, loosely, dy);
                 finish_step(dy, dx, dv);
                 if (const Index step = segment * m_interval + s + 1; step % m_rule.steps_per_frame == 0) {
                     frames.push_back(dx);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <springfit/network/forces.hpp>
+#include <springfit/simulate/detail/network_bounds.hpp>
 #include <springfit/solve/newton.hpp>
 
 namespace springfit::detail {
@@ -11,13 +11,16 @@ namespace springfit::detail {
 /// Its Hessian is the exact one, which converges quadratically, where the gradient has become small. Far from the
 /// minimum, compressed springs make it indefinite and a Newton step along it poor: there it is the semidefinite one, at
 /// once or, from `start_exact()` on, as soon as the solver meets negative curvature.
-template <int Dim, std::floating_point ScalarType>
-class SpringPotential {
+///
+/// `Network` is a `SpringNetwork` or a `BiquadraticNetwork`.
+template <class Network>
+class NetworkPotential {
 public:
-    using Scalar = ScalarType;
+    static constexpr int Dim = Network::dimension;
+    using Scalar = typename Network::Scalar;
 
-    SpringPotential(const SpringNetwork<Dim, Scalar>& network, const FreeNodes& free)
-        : m_matrix(spring_matrix(network, free)) {}
+    NetworkPotential(const Network& network, const FreeNodes& free)
+        : m_matrix(network_matrix(network, free)) {}
 
     [[nodiscard]] const FreeNodes& free_nodes() const { return m_matrix.free_nodes(); }
     [[nodiscard]] const BlockMatrix<Dim, Scalar>& matrix() const { return m_matrix; }
@@ -25,8 +28,8 @@ public:
     /// Clamped nodes stand as in `positions`, now and in what follows; `external` is held by pointer until the next.
     ///
     /// `floor`, relative to the largest entry of the Hessian's diagonal, is added to the diagonal: it keeps the matrix
-    /// regular where no spring holds a node, and moves no minimum.
-    void set_statics(const SpringNetwork<Dim, Scalar>& network, const Points<Dim, Scalar>& positions,
+    /// regular where nothing holds a node, as across a flat membrane, and moves no minimum.
+    void set_statics(const Network& network, const Points<Dim, Scalar>& positions,
                      const Points<Dim, Scalar>& external, Scalar floor = 0) {
         m_network = &network;
         m_external = &external;
@@ -73,7 +76,7 @@ public:
 
 private:
     BlockMatrix<Dim, Scalar> m_matrix;
-    const SpringNetwork<Dim, Scalar>* m_network = nullptr;
+    const Network* m_network = nullptr;
     const Points<Dim, Scalar>* m_external = nullptr;
     Scalar m_floor = 0;
     Scalar m_exact_below = 0;
@@ -87,4 +90,4 @@ private:
 
 } // namespace springfit::detail
 
-#include <springfit/simulate/detail/spring_potential_impl.hpp>
+#include <springfit/simulate/detail/network_potential_impl.hpp>
