@@ -75,11 +75,13 @@ TEST_CASE_TEMPLATE("a rotation comes back from behind a stretch, alone and in la
     const int n_checked = dim == 3 ? 4 : 3; // in the plane a reflection has a nearest rotation, too
     for (int lane = 0; lane < n_checked; ++lane) {
         CAPTURE(lane);
-        CHECK((get<Scalar, dim>(lanes, lane) - expected[lane]).norm() < std::max(Scalar(1e-7), 10 * test::rounding<Scalar>()));
+        CHECK((get<Scalar, dim>(lanes, lane) - expected[lane]).norm() <
+              std::max(Scalar(1e-7), 10 * test::rounding<Scalar>()));
         detail::SquareColumns<dim, Scalar> alone;
         set<dim>(alone, given[lane], 0);
         detail::make_rotation<dim, Scalar>(alone);
-        CHECK((get<Scalar, dim>(alone, 0) - expected[lane]).norm() < std::max(Scalar(1e-7), 10 * test::rounding<Scalar>()));
+        CHECK((get<Scalar, dim>(alone, 0) - expected[lane]).norm() <
+              std::max(Scalar(1e-7), 10 * test::rounding<Scalar>()));
     }
 }
 

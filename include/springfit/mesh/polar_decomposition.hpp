@@ -14,8 +14,8 @@ namespace springfit::detail {
 template <int Dim, class Real>
 using SquareColumns = std::array<std::array<Real, Dim>, Dim>;
 
-/// Newton's iteration X <- (X + X^-T) / 2 for the rotation of X, until no lane changes by more than `tolerance`. Returns
-/// the determinant of the last X but one: 1 where it has come to a rotation, -1 where to a reflection.
+/// Newton's iteration X <- (X + X^-T) / 2 for the rotation of X, until no lane changes by more than `tolerance`.
+/// Returns the determinant of the last X but one: 1 where it has come to a rotation, -1 where to a reflection.
 template <class Real>
 Real iterate_to_rotation(SquareColumns<3, Real>& x, double tolerance, int max_iterations) {
     Real determinant(0);

@@ -155,9 +155,7 @@ template <bool Damped, class Visit>
 void IncrementalPotential<Dim, ScalarType>::for_springs(const std::vector<Block>& blocks, Scalar h, Scalar lowest,
                                                         const Visit& visit) const {
     constexpr int lanes = Packed::lanes;
-    using Values = Eigen::Array<Scalar, lanes, 1>;
-    using Map = Eigen::Map<Values, Eigen::Aligned32>;
-    using ConstMap = Eigen::Map<const Values, Eigen::Aligned32>;
+    using Values = detail::Lanes<Scalar, lanes>;
     constexpr Scalar tiny = std::numeric_limits<Scalar>::min();
     const Four<Scalar>* const x = this->m_positions.data();
     const Four<Scalar>* const start = m_start.data();
@@ -184,20 +182,21 @@ void IncrementalPotential<Dim, ScalarType>::for_springs(const std::vector<Block>
                 dot_products(old + l, change + l, changes + l);
             }
         }
-        const ConstMap k(block.stiffness);
-        const Values inverse = (ConstMap(squares) + tiny).sqrt().inverse();
-        const Values geometric = k - ConstMap(block.pull) * inverse;
-        const Values c1 = geometric.max(lowest * k);
+        const Values& k = Values::at(block.stiffness);
+        const Values inverse = Scalar(1) / sqrt(Values::at(squares) + tiny);
+        const Values geometric = k - Values::at(block.pull) * inverse;
+        const Values least = lowest * k;
+        const Values c1 = where_less(geometric, least, least, geometric);
         Values axial = k - c1;
         alignas(64) Scalar tension[lanes], drag[lanes], factors[lanes], transverse[lanes];
         if constexpr (Damped) {
-            const Values damping = per_step * ConstMap(block.damping);
+            const Values damping = per_step * Values::at(block.damping);
             axial += damping;
-            Map{drag} = damping * ConstMap(changes) / (ConstMap(old_squares) + tiny);
+            Values::at(drag) = damping * Values::at(changes) / (Values::at(old_squares) + tiny);
         }
-        Map{tension} = geometric;
-        Map{factors} = axial.sqrt() * inverse;
-        Map{transverse} = c1;
+        Values::at(tension) = geometric;
+        Values::at(factors) = sqrt(axial) * inverse;
+        Values::at(transverse) = c1;
         for (int l = 0; l < lanes; ++l) {
             Four<Scalar> force, vector;
             force.lanes = tension[l] * r[l].lanes;

@@ -213,8 +213,7 @@ template <int Dim, std::floating_point ScalarType>
     requires SpatialDimension<Dim>
 void SpringBody<Dim, ScalarType>::add_spring_forces(const std::vector<Block>& blocks, bool on_both_ends) {
     constexpr int lanes = Packed::lanes;
-    using Values = Eigen::Array<Scalar, lanes, 1>;
-    using ConstMap = Eigen::Map<const Values, Eigen::Aligned32>;
+    using Values = detail::Lanes<Scalar, lanes>;
     for (std::size_t first = 0; first < blocks.size(); first += Packed::blocks_per_chunk) {
         const std::size_t n = std::min<std::size_t>(Packed::blocks_per_chunk, blocks.size() - first);
         const Block* const chunk = blocks.data() + first;
@@ -237,11 +236,10 @@ void SpringBody<Dim, ScalarType>::add_spring_forces(const std::vector<Block>& bl
             alignas(32) Scalar all_squares[lanes], all_rates[lanes];
             detail::concatenate<lanes>(squares, all_squares);
             detail::concatenate<lanes>(rates, all_rates);
-            const ConstMap square(all_squares), rate(all_rates);
-            const Values inverse = (square + std::numeric_limits<Scalar>::min()).sqrt().inverse();
-            Eigen::Map<Values, Eigen::Aligned32> factor(factors[b]);
-            factor = ConstMap(block.stiffness) -
-                     inverse * (ConstMap(block.pull) - ConstMap(block.damping) * (inverse * rate));
+            const Values& rate = Values::at(all_rates);
+            const Values inverse = Scalar(1) / sqrt(Values::at(all_squares) + std::numeric_limits<Scalar>::min());
+            Values::at(factors[b]) = Values::at(block.stiffness) -
+                                     inverse * (Values::at(block.pull) - Values::at(block.damping) * (inverse * rate));
         }
         for (std::size_t b = 0; b < n; ++b) {
             for (int lane = 0; lane < lanes; ++lane) {

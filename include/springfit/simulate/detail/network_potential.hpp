@@ -19,8 +19,7 @@ public:
     static constexpr int Dim = Network::dimension;
     using Scalar = typename Network::Scalar;
 
-    NetworkPotential(const Network& network, const FreeNodes& free)
-        : m_matrix(network_matrix(network, free)) {}
+    NetworkPotential(const Network& network, const FreeNodes& free) : m_matrix(network_matrix(network, free)) {}
 
     [[nodiscard]] const FreeNodes& free_nodes() const { return m_matrix.free_nodes(); }
     [[nodiscard]] const BlockMatrix<Dim, Scalar>& matrix() const { return m_matrix; }
@@ -29,8 +28,8 @@ public:
     ///
     /// `floor`, relative to the largest entry of the Hessian's diagonal, is added to the diagonal: it keeps the matrix
     /// regular where nothing holds a node, as across a flat membrane, and moves no minimum.
-    void set_statics(const Network& network, const Points<Dim, Scalar>& positions,
-                     const Points<Dim, Scalar>& external, Scalar floor = 0) {
+    void set_statics(const Network& network, const Points<Dim, Scalar>& positions, const Points<Dim, Scalar>& external,
+                     Scalar floor = 0) {
         m_network = &network;
         m_external = &external;
         m_points = positions;
