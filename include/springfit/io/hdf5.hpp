@@ -142,3 +142,4 @@ private:
 } // namespace springfit::io::hdf5
 
 #include <springfit/io/detail/hdf5_impl.hpp>
+#include <springfit/io/detail/hdf5_series_impl.hpp>
