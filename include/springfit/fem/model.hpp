@@ -130,4 +130,5 @@ private:
 
 } // namespace springfit::fem
 
+#include <springfit/fem/detail/model_energy_impl.hpp>
 #include <springfit/fem/detail/model_impl.hpp>
