@@ -3,7 +3,7 @@
 
 #include <springfit/core/execution.hpp>
 #include <springfit/core/status.hpp>
-#include <springfit/fit/trajectory/detail/windows.hpp>
+#include <springfit/fit/trajectory/detail/window_simulation.hpp>
 #include <springfit/fit/trajectory/parameters.hpp>
 #include <springfit/motion/motion.hpp>
 
@@ -134,4 +134,5 @@ private:
 
 } // namespace springfit
 
+#include <springfit/fit/trajectory/detail/point_impl.hpp>
 #include <springfit/fit/trajectory/detail/problem_impl.hpp>
