@@ -27,7 +27,7 @@ struct NewtonOptions {
     Scalar loose_tolerance = 0;     ///< the same far from the minimum, where the gradient falls slowly; 0: no looser
 };
 
-/// How a Newton minimisation ended.
+/// The outcome of a Newton minimisation.
 template <std::floating_point Scalar>
 struct NewtonReport {
     Status status = Status::failed;
@@ -38,7 +38,7 @@ struct NewtonReport {
 
 namespace detail {
 
-/// How well a problem knows its energy, at the coordinates last used; 0 where it does not say.
+/// The rounding error of a problem's energy at the coordinates last used; 0 where it does not say.
 template <SmoothProblem P>
 [[nodiscard]] typename P::Scalar energy_rounding(P& problem) {
     if constexpr (requires { problem.energy_rounding(); }) {
@@ -67,7 +67,7 @@ template <SmoothProblem P, class Solver>
     return solved;
 }
 
-/// Where a line search ends.
+/// The end of a line search.
 template <std::floating_point Scalar>
 struct LineSearchPoint {
     Values<Scalar> x;

@@ -7,7 +7,7 @@
 
 namespace springfit {
 
-/// Which form of the Gauss-Newton matrix to use.
+/// The form of the Gauss-Newton matrix.
 enum class GaussNewtonForm {
     automatic,  ///< dense where `TrajectoryPoint::has_dense`, else matrix-free
     dense,      ///< the Hadamard form and a Cholesky factor

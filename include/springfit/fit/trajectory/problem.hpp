@@ -15,7 +15,7 @@ enum class PredictionRule {
     implicit_euler ///< first order; damps what the step does not resolve
 };
 
-/// What to match, and how.
+/// Options of trajectory matching, whatever the engine.
 struct TrajectoryOptions {
     TrajectoryParameterOptions parameters{};
     double prior_weight = 1e-4; ///< lambda >= 0: weight of |theta|^2 beside cases of unit size

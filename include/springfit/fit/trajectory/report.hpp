@@ -8,7 +8,7 @@
 
 namespace springfit {
 
-/// What an engine of trajectory matching found.
+/// The result of an engine of trajectory matching.
 struct TrajectoryReport {
     Status status = Status::failed; ///< `failed`: neither the prior nor a stiffer one could be simulated
     Values<double> theta;           ///< [n_unknowns], within the bounds; the best point that was simulated and stable

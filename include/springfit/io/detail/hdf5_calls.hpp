@@ -28,7 +28,7 @@ private:
     void* m_data = nullptr;
 };
 
-/// What HDF5 says of the last error: the system's reason where there is one.
+/// HDF5's message on the last error: the system's reason where there is one.
 [[nodiscard]] inline std::string last_error() {
     std::string innermost;
     const auto visit = [](unsigned depth, const H5E_error2_t* error, void* result) -> herr_t {

@@ -58,7 +58,7 @@ public:
         }
     }
 
-    /// What a solve comes by on its way.
+    /// Inner products that a solve accumulates.
     struct Sums {
         double xb = 0; ///< x' b
         double xx = 0; ///< x' x

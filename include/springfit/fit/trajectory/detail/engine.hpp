@@ -10,7 +10,7 @@
 #include <springfit/fit/trajectory/problem.hpp>
 #include <springfit/fit/trajectory/report.hpp>
 
-/// What the engines of trajectory matching share: where they start, and what they report.
+/// Shared by the engines of trajectory matching: where they start, and what they report.
 namespace springfit::detail {
 
 /// Marks unknowns that sit at a bound and would leave it along minus the gradient.

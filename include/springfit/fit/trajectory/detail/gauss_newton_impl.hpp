@@ -75,7 +75,7 @@ inline void limit(Values<double>& step, double most) {
     step = step.cwiseMax(-most).cwiseMin(most);
 }
 
-/// Whether iterations have gained too little for a search to go on: less than a part of what is left twice running, the
+/// Tells when iterations gain too little for a search to go on: less than a part of what is left twice running, the
 /// second no more than the first. Gains that grow are those of steps that damping still shortens.
 class SmallGains {
 public:

@@ -25,7 +25,7 @@ inline void add_scaled(const ColumnBlock& from, const Eigen::ArrayXd& factors, d
     });
 }
 
-/// Whether a value of some column is above the bound of that column.
+/// True where a value of some column is above a part of the bound of that column.
 inline bool any_above(const Eigen::ArrayXd& values, double part, const Eigen::ArrayXd& bounds) {
     for (Index c = 0; c < values.size(); ++c) {
         if (values(c) > part * bounds(c)) {
@@ -35,7 +35,7 @@ inline bool any_above(const Eigen::ArrayXd& values, double part, const Eigen::Ar
     return false;
 }
 
-/// What a static case or an implicit step solves for each column of a block, over the free nodes:
+/// The equations of a static case or an implicit step, for each column of a block, over the free nodes:
 ///
 ///     w M (y - target) - f_elastic(y) + d D(old) (y - old) = external ,
 ///
@@ -76,7 +76,7 @@ struct ImplicitSystem {
         hold(product);
     }
 
-    /// What is out of balance: external + f_elastic(y) - w M (y - target) - d D(old) (y - old).
+    /// The force out of balance: external + f_elastic(y) - w M (y - target) - d D(old) (y - old).
     void unbalanced(const ColumnBlock& y, const ColumnBlock& target, const ColumnBlock& old,
                     const ColumnBlock& external, ColumnBlock& force) const {
         force = external;

@@ -8,7 +8,7 @@
 
 namespace springfit::detail {
 
-/// How a step of h goes from (x, v): y is where an implicit Euler step of alpha h leads, and the step is carried on
+/// The rule of a step of h from (x, v): y is where an implicit Euler step of alpha h leads, and the step is carried on
 /// from there in a straight line, x+ = x + (y - x) / alpha, v+ = v + ((y - x) / (alpha h) - v) / alpha: implicit Euler
 /// at alpha = 1, the implicit midpoint rule at 1/2.
 struct StepRule {
@@ -16,7 +16,7 @@ struct StepRule {
     int steps_per_frame = 1;
 };
 
-/// What a simulated block keeps: its states at checkpoints, and all steps of one segment between them.
+/// The record of a simulated block: its states at checkpoints, and all steps of one segment between them.
 template <int Dim>
 struct WindowTape {
     std::vector<CorotatedBlockPreconditioner<Dim>> turned; ///< of a static case: the factor turned to the equilibrium
@@ -180,7 +180,7 @@ private:
         return true;
     }
 
-    /// How near a linear solve must come.
+    /// The accuracy of a linear solve.
     struct Precision {
         double tolerance;
         int max_iterations;
