@@ -5,9 +5,14 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
-#include <springfit/io/hdf5.hpp>
+#include <hdf5.h>
 
+#include <springfit/core/error.hpp>
+
+/// HDF5's own objects, errors, types and shapes, as `io/hdf5.hpp` uses them.
 namespace springfit::io::hdf5 {
 
 namespace detail {
@@ -46,6 +51,52 @@ private:
     return innermost.empty() ? "HDF5 gives no reason" : innermost;
 }
 
+} // namespace detail
+
+/// Numbers of entries along the axes, slowest first.
+using Shape = std::vector<hsize_t>;
+
+/// `[200 x 12 x 3]`
+[[nodiscard]] inline std::string to_text(const Shape& shape) {
+    std::string result = "[";
+    for (std::size_t axis = 0; axis < shape.size(); ++axis) {
+        result += text(axis > 0 ? " x " : "", shape[axis]);
+    }
+    return result + "]";
+}
+
+/// Any HDF5 object, with the function that closes it.
+class Handle {
+public:
+    using Close = herr_t (*)(hid_t);
+    Handle() = default;
+    Handle(hid_t id, Close closer) : m_id(id), m_close(closer) {}
+    Handle(Handle&& other) noexcept : m_id(std::exchange(other.m_id, -1)), m_close(other.m_close) {}
+    Handle& operator=(Handle&& other) noexcept {
+        std::swap(m_id, other.m_id);
+        std::swap(m_close, other.m_close);
+        return *this;
+    }
+    ~Handle() { (void)close(); }
+
+    [[nodiscard]] bool is_open() const noexcept { return m_id >= 0; }
+    [[nodiscard]] hid_t get() const noexcept { return m_id; }
+    /// False where closing failed, as when what was still in memory could not be written.
+    [[nodiscard]] bool close() noexcept {
+        if (!is_open()) {
+            return true;
+        }
+        const detail::Quiet quiet;
+        return m_close(std::exchange(m_id, -1)) >= 0;
+    }
+
+private:
+    hid_t m_id = -1;
+    Close m_close = nullptr;
+};
+
+namespace detail {
+
 template <class T>
 [[nodiscard]] hid_t memory_type() {
     if constexpr (std::is_same_v<T, double>) {
@@ -68,17 +119,6 @@ template <class T>
     return {H5Screate_simple(static_cast<int>(shape.size()), shape.data(), maximum.data()), H5Sclose};
 }
 
-/// Refuses what cannot be read as numbers of type T.
-template <class T>
-void check_type(const File& file, const std::string& dataset, const Handle& handle) {
-    const Handle type(H5Dget_type(handle.get()), H5Tclose);
-    const H5T_class_t found = H5Tget_class(type.get());
-    const bool accepted = found == H5T_INTEGER || (std::is_floating_point_v<T> && found == H5T_FLOAT);
-    if (!accepted) {
-        file.refuse(dataset, std::is_floating_point_v<T> ? "expected numbers" : "expected whole numbers");
-    }
-}
-
 [[nodiscard]] inline Shape shape_of(const Handle& dataset) {
     const Handle space(H5Dget_space(dataset.get()), H5Sclose);
     const int rank = H5Sget_simple_extent_ndims(space.get());
@@ -88,21 +128,5 @@ void check_type(const File& file, const std::string& dataset, const Handle& hand
 }
 
 } // namespace detail
-
-inline std::string to_text(const Shape& shape) {
-    std::string result = "[";
-    for (std::size_t axis = 0; axis < shape.size(); ++axis) {
-        result += text(axis > 0 ? " x " : "", shape[axis]);
-    }
-    return result + "]";
-}
-
-inline bool Handle::close() noexcept {
-    if (!is_open()) {
-        return true;
-    }
-    const detail::Quiet quiet;
-    return m_close(std::exchange(m_id, -1)) >= 0;
-}
 
 } // namespace springfit::io::hdf5

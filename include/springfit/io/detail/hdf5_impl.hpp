@@ -7,9 +7,24 @@
 #include <unistd.h>
 
 #include <springfit/io/detail/atomic_file_impl.hpp>
-#include <springfit/io/detail/hdf5_calls.hpp>
+#include <springfit/io/hdf5.hpp>
 
 namespace springfit::io::hdf5 {
+
+namespace detail {
+
+/// Refuses what cannot be read as numbers of type T.
+template <class T>
+void check_type(const File& file, const std::string& dataset, const Handle& handle) {
+    const Handle type(H5Dget_type(handle.get()), H5Tclose);
+    const H5T_class_t found = H5Tget_class(type.get());
+    const bool accepted = found == H5T_INTEGER || (std::is_floating_point_v<T> && found == H5T_FLOAT);
+    if (!accepted) {
+        file.refuse(dataset, std::is_floating_point_v<T> ? "expected numbers" : "expected whole numbers");
+    }
+}
+
+} // namespace detail
 
 inline ReservedSpace::ReservedSpace(const std::filesystem::path& path, std::string shown)
     : m_descriptor(path, O_RDWR | O_CREAT), m_name(std::move(shown)) {

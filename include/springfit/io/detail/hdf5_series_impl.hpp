@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include <springfit/io/detail/hdf5_calls.hpp>
+#include <springfit/io/hdf5.hpp>
 
 namespace springfit::io::hdf5 {
 
