@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "cases/specimens.hpp"
 #include "threads.hpp"
 #include "tolerance.hpp"
 
@@ -8,33 +9,15 @@ using namespace springfit;
 
 namespace {
 
-template <int Dim>
-auto box() {
-    if constexpr (Dim == 2) {
-        return triangle_grid<double>({3, 5}, {0.3, 0.5});
-    } else {
-        return tetrahedron_grid<double>({2, 3, 2}, {0.2, 0.3, 0.2});
-    }
-}
-
 /// A network that others are fitted to, with stiffness that varies from spring to spring.
 template <int Dim>
 SpringNetwork<Dim, double> hidden() {
-    const auto mesh = box<Dim>();
-    auto network = springs_along_edges(mesh, {.density = 1000.});
-    network.stiffness = van_gelder(mesh, network.springs, {.young = 1e4, .poisson = 0.3}).stiffness;
+    auto network = test::small_network<Dim>();
     for (Index e = 0; e < network.n_springs(); ++e) {
         network.stiffness(e) *= 1 + 0.5 * std::sin(static_cast<double>(e));
     }
     network.damping = stiffness_proportional_damping(network, 0.3 * stable_step(network));
     return network;
-}
-
-template <int Dim>
-Specimen<Dim, double> specimen() {
-    auto body = specimen_of(box<Dim>(), 1000.);
-    body.clamps = {{side_nodes(body.rest_positions, {.axis = 1}), {}}};
-    return body;
 }
 
 /// Few and small cases, so that a test takes a moment.
@@ -58,7 +41,7 @@ SpringNetwork<Dim, double> even(SpringNetwork<Dim, double> network) {
 
 template <int Dim>
 RecordedCases<Dim, double> cases_of(const SpringNetwork<Dim, double>& network) {
-    auto cases = record_cases(network, specimen<Dim>(), few<Dim>());
+    auto cases = record_cases(network, test::small_specimen<Dim>(), few<Dim>());
     cases.stiffness_damping = 0.3 * stable_step([&] {
                                   auto undamped = network;
                                   undamped.damping.setZero();
@@ -85,7 +68,7 @@ TEST_CASE_TEMPLATE("a network that springs can represent is found again", T, tes
     }
     CHECK(result.best().held_out.error < 3e-3 * result.candidates[0].held_out.error);
     // Springs that some motion in time moves are found to the accuracy of the solver.
-    const auto clamped = specimen<dim>().clamps.front().nodes;
+    const auto clamped = test::small_specimen<dim>().clamps.front().nodes;
     const auto is_clamped = [&](int node) { return std::binary_search(clamped.begin(), clamped.end(), node); };
     for (Index e = 0; e < truth.n_springs(); ++e) {
         if (!is_clamped(truth.springs(0, e)) || !is_clamped(truth.springs(1, e))) {
@@ -118,10 +101,10 @@ TEST_CASE("the same bits on any number of threads") {
 }
 
 TEST_CASE("a mesh and a material are enough") {
-    BodyOptions<2> body{.density = 1000, .clamped = specimen<2>().clamps.front().nodes};
+    BodyOptions<2> body{.density = 1000, .clamped = test::small_specimen<2>().clamps.front().nodes};
     body.record = few<2>();
     body.how.matching_iterations = 5;
-    const auto result = calibrate(box<2>(), fem::NeoHookean{.young = 1e4, .poisson = 0.3}, body);
+    const auto result = calibrate(test::small_box<2>(), fem::NeoHookean{.young = 1e4, .poisson = 0.3}, body);
     CHECK(result.verdict == Verdict::good);
     CHECK(result.candidates.front().name == "van_gelder");
     CHECK(result.best().held_out.error < result.candidates.front().held_out.error);
@@ -134,8 +117,9 @@ TEST_CASE("a mesh and a material are enough") {
     CHECK(stages == std::vector<std::string>{"reference", "fit", "score"});
     // A quadratic mesh is a reference of the network on its corners.
     body.how.method = Method::closed_form;
-    const auto fine = calibrate(quadratic(box<2>()), fem::LinearElastic{.young = 1e4, .poisson = 0.3}, body);
-    CHECK(fine.best().network.n_nodes() == box<2>().n_nodes());
+    const auto fine =
+        calibrate(quadratic(test::small_box<2>()), fem::LinearElastic{.young = 1e4, .poisson = 0.3}, body);
+    CHECK(fine.best().network.n_nodes() == test::small_box<2>().n_nodes());
     CHECK(fine.verdict == Verdict::good);
 }
 
@@ -180,7 +164,7 @@ TEST_CASE("an interruption leaves what is done, and says so") {
     }
     auto options = few<2>();
     options.progress = [](const Progress&) { return false; };
-    const auto cut_short = record_cases(truth, specimen<2>(), options);
+    const auto cut_short = record_cases(truth, test::small_specimen<2>(), options);
     CHECK(cut_short.interrupted);
     CHECK(cut_short.training.size() + cut_short.held_out.size() < 5);
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "specimens.hpp"
 #include "threads.hpp"
 #include "tolerance.hpp"
 
@@ -7,22 +8,6 @@
 using namespace springfit;
 
 namespace {
-
-template <int Dim>
-auto box() {
-    if constexpr (Dim == 2) {
-        return triangle_grid<double>({3, 5}, {0.3, 0.5});
-    } else {
-        return tetrahedron_grid<double>({2, 3, 2}, {0.2, 0.3, 0.2});
-    }
-}
-
-template <int Dim>
-Specimen<Dim, double> specimen() {
-    auto body = specimen_of(box<Dim>(), 1000.);
-    body.clamps = {{side_nodes(body.rest_positions, {.axis = 1}), {}}};
-    return body;
-}
 
 template <int Dim>
 RecordCasesOptions<Dim, double> few() {
@@ -43,8 +28,8 @@ const fem::LinearElastic linear{.young = 1e4, .poisson = 0.3};
 TEST_CASE_TEMPLATE("cases have their roles, kinds, clamps and strains", T, test::Space<2, double>,
                    test::Space<3, double>) {
     constexpr int dim = T::dimension;
-    const auto body = specimen<dim>();
-    const auto reference = fem_recorder(box<dim>(), linear, 1000.);
+    const auto body = test::small_specimen<dim>();
+    const auto reference = fem_recorder(test::small_box<dim>(), linear, 1000.);
     const auto cases = record_cases(reference, body, few<dim>());
     CHECK(!cases.interrupted);
     CHECK(cases.warnings.empty());
@@ -79,8 +64,8 @@ TEST_CASE_TEMPLATE("cases have their roles, kinds, clamps and strains", T, test:
 }
 
 TEST_CASE("recorders answer as their references do") {
-    const auto mesh = box<2>();
-    const auto body = specimen<2>();
+    const auto mesh = test::small_box<2>();
+    const auto body = test::small_specimen<2>();
     const fem::Model model{mesh, linear, 1000.};
     const auto by_model = record_cases(model, body, few<2>()); // any reference
     const auto by_recorder = record_cases(fem_recorder(mesh, linear, 1000.), body, few<2>());
@@ -113,38 +98,36 @@ TEST_CASE("recorders answer as their references do") {
 }
 
 TEST_CASE("damping is told where it can be") {
-    const auto recorder = fem_recorder(box<2>(), linear, 1000.);
+    const auto recorder = fem_recorder(test::small_box<2>(), linear, 1000.);
     auto options = few<2>();
     options.training_equilibria = 0;
     options.damping_ratio = 0.1;
-    const auto damped = record_cases(recorder, specimen<2>(), options);
+    const auto damped = record_cases(recorder, test::small_specimen<2>(), options);
     CHECK(test::relative(damped.stiffness_damping, 0.2 * damped.period / (2 * std::numbers::pi), 1e-3) < 1e-12);
-    const fem::Model model{box<2>(), linear, 1000., {.stiffness_damping = 2e-4}};
-    CHECK(record_cases(model, specimen<2>(), options).stiffness_damping == 2e-4); // its own
+    const fem::Model model{test::small_box<2>(), linear, 1000., {.stiffness_damping = 2e-4}};
+    CHECK(record_cases(model, test::small_specimen<2>(), options).stiffness_damping == 2e-4); // its own
 }
 
 TEST_CASE("a program that moves in time alone is scaled by the responses of a network") {
-    const auto mesh = box<2>();
-    auto network = springs_along_edges(mesh, {.density = 1000.});
-    network.stiffness = van_gelder(mesh, network.springs, {.young = 1e4, .poisson = 0.3}).stiffness;
+    const auto network = test::small_network<2>();
     SymplecticEuler<2, double> stepper(network);
     const UserReference<2, double> reference{
-        mesh.nodes, network.mass, [stepper](auto& state, const auto& scenario, double dt) mutable {
+        network.rest_positions, network.mass, [stepper](auto& state, const auto& scenario, double dt) mutable {
             auto inner = stepper;
             const Status status = inner.advance(state, scenario, dt);
             state.time -= status == Status::converged ? dt : 0; // the reference counts time itself
             return status;
         }};
     auto options = few<2>();
-    CHECK_THROWS_WITH_AS((void)record_cases(reference, specimen<2>(), options), doctest::Contains("responses"),
-                         InvalidArgument);
+    CHECK_THROWS_WITH_AS((void)record_cases(reference, test::small_specimen<2>(), options),
+                         doctest::Contains("responses"), InvalidArgument);
     options.responses = [&](const auto& scenarios) { return linear_responses(network, scenarios); };
-    const auto cases = record_cases(reference, specimen<2>(), options);
+    const auto cases = record_cases(reference, test::small_specimen<2>(), options);
     CHECK(cases.training.size() == 3); // no equilibria
     CHECK(cases.held_out.size() == 3);
     double largest = 0;
     for (const auto& positions : cases.training.motions.front().positions) {
-        largest = std::max(largest, (positions - mesh.nodes).colwise().norm().maxCoeff());
+        largest = std::max(largest, (positions - network.rest_positions).colwise().norm().maxCoeff());
     }
     const double size = std::hypot(0.3, 0.5);
     CHECK(largest > 0.02 * size);
@@ -152,8 +135,8 @@ TEST_CASE("a program that moves in time alone is scaled by the responses of a ne
 }
 
 TEST_CASE("a reference that fails is left out with a warning, and one that always fails is refused") {
-    const auto mesh = box<2>();
-    const auto body = specimen<2>();
+    const auto mesh = test::small_box<2>();
+    const auto body = test::small_specimen<2>();
     auto options = few<2>();
     auto network = springs_along_edges(mesh, {.density = 1000.});
     network.stiffness.setConstant(1e3);
@@ -174,14 +157,14 @@ TEST_CASE("a reference that fails is left out with a warning, and one that alway
 }
 
 TEST_CASE("clamps and options are checked") {
-    const auto recorder = fem_recorder(box<2>(), linear, 1000.);
-    auto loose = specimen<2>();
+    const auto recorder = fem_recorder(test::small_box<2>(), linear, 1000.);
+    auto loose = test::small_specimen<2>();
     loose.clamps = {{{0}, {}}};
     CHECK_THROWS_WITH_AS((void)record_cases(recorder, loose, few<2>()), doctest::Contains("clamps"), InvalidArgument);
     const auto refused = [&](const auto& change) {
         auto options = few<2>();
         change(options);
-        CHECK_THROWS_AS((void)record_cases(recorder, specimen<2>(), options), InvalidArgument);
+        CHECK_THROWS_AS((void)record_cases(recorder, test::small_specimen<2>(), options), InvalidArgument);
     };
     refused([](auto& o) { o.training_motions = 0; });
     refused([](auto& o) { o.held_out_motions = 0; });
@@ -195,7 +178,7 @@ TEST_CASE("clamps and options are checked") {
     refused([](auto& o) { o.small_strain = 0; });
     auto options = few<2>();
     options.holds = [](const std::vector<int>&) { return false; };
-    const auto cases = record_cases(recorder, specimen<2>(), options);
+    const auto cases = record_cases(recorder, test::small_specimen<2>(), options);
     CHECK(cases.training.size() == 3);
     REQUIRE(cases.warnings.size() == 1);
     CHECK(cases.warnings.front().code == WarningCode::clamps_left_out);

@@ -5,10 +5,39 @@
 #include <random>
 
 #include <springfit/cases/specimen.hpp>
+#include <springfit/closed_form/van_gelder.hpp>
 #include <springfit/mesh/structured.hpp>
+#include <springfit/network/builders.hpp>
 #include <springfit/network/masses.hpp>
 
 namespace springfit::test {
+
+/// A box of a few cells, 30 by 50 cm in the plane.
+template <int Dim>
+[[nodiscard]] auto small_box() {
+    if constexpr (Dim == 2) {
+        return triangle_grid<double>({3, 5}, {0.3, 0.5});
+    } else {
+        return tetrahedron_grid<double>({2, 3, 2}, {0.2, 0.3, 0.2});
+    }
+}
+
+/// That box, clamped where y = 0.
+template <int Dim>
+[[nodiscard]] Specimen<Dim, double> small_specimen() {
+    auto body = specimen_of(small_box<Dim>(), 1000.);
+    body.clamps = {{side_nodes(body.rest_positions, {.axis = 1}), {}}};
+    return body;
+}
+
+/// Its edges as springs, by Van Gelder's closed form.
+template <int Dim>
+[[nodiscard]] SpringNetwork<Dim, double> small_network() {
+    const auto mesh = small_box<Dim>();
+    auto network = springs_along_edges(mesh, {.density = 1000.});
+    network.stiffness = van_gelder(mesh, network.springs, {.young = 1e4, .poisson = 0.3}).stiffness;
+    return network;
+}
 
 /// A box three times as long as wide, its inner nodes moved, not clamped.
 template <int Dim, class Scalar>

@@ -11,7 +11,7 @@
 
 namespace springfit {
 
-/// What came of a calibration.
+/// The result of a calibration.
 template <int Dim>
 struct Calibration {
     RecordedCases<Dim, double> cases;       ///< what it was made and judged by

@@ -20,7 +20,7 @@ struct NamedNetwork {
     std::string caveat{}; ///< for what the formula is exact, where not for this body
 };
 
-/// How a network did on a set of cases.
+/// The errors of a network on a set of cases.
 struct CaseScores {
     double error = std::numeric_limits<double>::infinity(); ///< of the whole set; infinite until it is scored in full
     std::vector<std::size_t> cases;                         ///< numbers in the case set

@@ -7,7 +7,7 @@
 
 namespace springfit {
 
-/// What `make_candidates` made.
+/// The result of `make_candidates`.
 template <int Dim>
 struct Candidates {
     std::vector<Candidate<Dim>> all; ///< the given networks first, in their order, then the fits; unscored

@@ -7,13 +7,13 @@
 
 namespace springfit {
 
-/// How the network that is returned was chosen.
+/// The rule that the returned network was chosen by.
 enum class ChoiceRule {
     least_held_out_error, ///< of all candidates
     asked_for             ///< the method that was named, whatever its error
 };
 
-/// What the returned network is worth, by its error on cases that no fit has seen.
+/// The worth of the returned network, by its error on cases that no fit has seen.
 enum class Verdict {
     good,      ///< it moves like the reference
     poor,      ///< it does not: its held-out error is not below `CalibrateOptions::usable_error`
@@ -63,7 +63,7 @@ template <int Dim>
                                                                        : Verdict::poor;
 }
 
-/// What a user should know of scored candidates.
+/// Warnings about scored candidates, for the user.
 template <int Dim>
 [[nodiscard]] std::vector<Warning> warnings_on(const std::vector<Candidate<Dim>>& candidates) {
     std::vector<Warning> warnings;

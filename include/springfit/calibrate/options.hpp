@@ -9,7 +9,7 @@
 
 namespace springfit {
 
-/// Which candidates are made, and which of them is returned.
+/// The candidates to make, and the one of them to return.
 enum class Method {
     automatic,     ///< all; the one with the least held-out error
     closed_form,   ///< the given networks alone; the one with the least held-out error
@@ -23,7 +23,7 @@ enum class Method {
     return method == Method::automatic || method == Method::trajectory;
 }
 
-/// How springs are damped.
+/// The damping of the springs.
 enum class DampingRule {
     proportional, ///< d = beta k, beta that of the reference
     ratio,        ///< d = 2 zeta sqrt(k (m_i + m_j)) (`mass_stiffness_damping`)
@@ -33,7 +33,7 @@ enum class DampingRule {
 /// A solver of the acceleration fit to its global minimum: `exact`, or `ipopt::exact`.
 using ExactSolver = std::function<AccelerationReport(const AccelerationProblem&, const ExactOptions&)>;
 
-/// What `calibrate` does and how long it may take. The defaults are those of the program.
+/// Options of `calibrate`: what it does and how long it may take. The defaults are those of the program.
 struct CalibrateOptions {
     Method method = Method::automatic;
     DampingRule damping = DampingRule::proportional;

@@ -5,7 +5,7 @@
 
 namespace springfit {
 
-/// What the recording of load cases asks of a reference, whatever simulates it: virtual calls once per case.
+/// A reference as the recording of load cases sees it, whatever simulates it: virtual calls once per case.
 ///
 /// `ReferenceRecorder` makes one of any model of the concept Reference, `fem_recorder` of a mesh and a material.
 template <int Dim, std::floating_point Scalar>

@@ -40,7 +40,7 @@ struct CaseSet {
     }
 };
 
-/// What a reference did: what fits learn from, and what judges them, which no fit sees.
+/// The recorded cases of a reference: those that fits learn from, and those that judge them, which no fit sees.
 template <int Dim, std::floating_point Scalar>
 struct RecordedCases {
     CaseSet<Dim, Scalar> training;

@@ -36,7 +36,7 @@ fem::Statics<Dim, Scalar> make_static_solver(const SharedBody<Dim, Scalar>& shar
 
 /// A finite element body at its vertices: load cases and recordings know no others, whatever nodes lie on its edges.
 ///
-/// What acts on a node in the middle of an edge is handed to the edge's ends; it is clamped where both of them are.
+/// Loads on a node in the middle of an edge are handed to the edge's ends; it is clamped where both of them are.
 template <int Dim, std::floating_point Scalar>
 class FemRecorder final : public CaseRecorder<Dim, Scalar> {
 public:

@@ -7,7 +7,7 @@
 
 namespace springfit {
 
-/// What a load case is for: to be learnt from, or to judge what was learnt in one of three ways.
+/// The purpose of a load case: to be learnt from, or to judge what was learnt in one of three ways.
 enum class CaseRole {
     training,
     unseen_load, ///< kinds and clamps that training has, other loads

@@ -11,7 +11,7 @@
 
 namespace springfit {
 
-/// Which load cases are recorded, how large and how long. The defaults are those that `calibrate` learns from.
+/// The load cases to record: how many, how large and how long. The defaults are those that `calibrate` learns from.
 template <int Dim, std::floating_point Scalar>
 struct RecordCasesOptions {
     using Scenarios = std::vector<Scenario<Dim, Scalar>>;

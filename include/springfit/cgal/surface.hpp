@@ -12,13 +12,13 @@ namespace springfit::cgal {
 /// A triangle surface in space on plain arrays: points `[3 x n_nodes]`, m, and triangles `[3 x n_cells]`.
 using Surface = Mesh<3, double, Tri3>;
 
-/// What is mended beyond the usual (points given twice merged, faces oriented alike, stitched, cut into triangles,
+/// Repairs beyond the usual ones (points given twice merged, faces oriented alike, stitched, cut into triangles,
 /// degenerate and repeated faces dropped).
 struct RepairOptions {
     int max_hole_edges = 0; ///< holes with at most this many boundary edges are filled, >= 0; 0 leaves all open
 };
 
-/// What a surface is like; a solid can be meshed where `bounds_volume` is true.
+/// Properties of a surface; a solid can be meshed where `bounds_volume` is true.
 struct SurfaceExamination {
     Index boundary_edges = 0;     ///< edges with a face on one side only
     Index holes = 0;              ///< closed loops of such edges

@@ -12,7 +12,7 @@ namespace springfit::cgal {
 
 namespace detail {
 
-/// What a dart knows: the node where it starts and the facet of the cell it belongs to.
+/// Data of a dart: the node where it starts, and the facet of the cell that it belongs to.
 struct DartInfo {
     int node = -1;
     int cell = -1;

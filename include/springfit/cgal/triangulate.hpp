@@ -11,7 +11,7 @@
 
 namespace springfit::cgal {
 
-/// What bounds a plane body: closed rings of segments, and a point in every region that is to stay empty.
+/// The boundary of a plane body: closed rings of segments, and a point in every region that is to stay empty.
 struct Outline {
     Points<2, double> points; ///< [2 x n_points], m; those that no segment uses are left out
     NodePairs segments;       ///< point numbers [2 x n_segments]; segments inside the body become edges of the mesh

@@ -9,7 +9,7 @@ struct CauchySplitOptions {
     bool signed_volume = false; ///< keep kappa < 0, where Poisson's ratio is below 1/4 (plane stress: 1/3); else 0
 };
 
-/// What `cauchy_split` gives to springs and cells.
+/// The values that `cauchy_split` gives to springs and cells.
 template <std::floating_point Scalar>
 struct CauchySplit {
     ClosedForm<Scalar> springs;      ///< as of any closed form; its caveat is that of springs and cells together

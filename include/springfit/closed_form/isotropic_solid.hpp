@@ -11,7 +11,7 @@
 
 namespace springfit {
 
-/// What a closed form needs to know of a material.
+/// The material as closed forms need it.
 struct IsotropicSolid {
     double young = 0;          ///< Young's modulus E > 0, Pa
     double poisson = 0;        ///< Poisson's ratio nu in (-1, 0.5)
@@ -19,7 +19,7 @@ struct IsotropicSolid {
     bool plane_strain = false; ///< of plane bodies, else plane stress; membranes are in plane stress
 };
 
-/// What a closed form gives to each spring.
+/// The values that a closed form gives to the springs.
 template <std::floating_point Scalar>
 struct ClosedForm {
     Values<Scalar> stiffness; ///< k_e >= 0 [n_springs], N/m

@@ -40,6 +40,58 @@ template <std::floating_point Real>
     return rate;
 }
 
+/// The square of what a cell misses of a tension test, k'(hessian k - 2 linear) + target, by the stiffnesses k of its
+/// edges, face and body diagonals, in units of E and the side of the cube.
+struct TensileMisfit {
+    Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d linear = Eigen::Vector3d::Zero();
+    double target = 0;
+
+    void add(const Eigen::Matrix<double, 2, 3>& row, double stress) {
+        hessian += row.row(0).transpose() * row.row(0) + 2 * row.row(1).transpose() * row.row(1);
+        linear += stress * row.row(0).transpose();
+        target += stress * stress;
+    }
+
+    /// As a part of the test's stress.
+    [[nodiscard]] double relative(const Values<double>& k) const {
+        return std::sqrt(maximum(0., target + k.dot(hessian * k - 2 * linear)) / target);
+    }
+};
+
+[[nodiscard]] inline TensileMisfit tensile_misfit(const IsotropicSolid& solid, const TensileCurves& curves) {
+    TensileMisfit misfit;
+    if (curves.largest_strain == 0) {
+        misfit.add(cube_stress_rate(solid.poisson), 1);
+        return misfit;
+    }
+    for (int s = 1; s <= curves.samples; ++s) {
+        const double strain = curves.largest_strain * s / curves.samples;
+        const double contraction = curves.contraction ? curves.contraction(strain) : solid.poisson * strain;
+        const double stress = curves.stress ? curves.stress(strain) / solid.young : strain;
+        require(contraction < 1, "contraction", "values below 1", contraction);
+        require(std::isfinite(stress), "stress", "finite values", stress);
+        misfit.add(cube_stress(1 + strain, 1 - contraction), stress);
+    }
+    return misfit;
+}
+
+/// The k >= 0 of least misfit and, among equals, of the least norm; 0 for diagonals that there are none of.
+[[nodiscard]] inline Values<double> least_misfit(const TensileMisfit& misfit, bool faces, bool bodies) {
+    const double infinity = std::numeric_limits<double>::infinity();
+    const Values<double> lower = Values<double>::Zero(3);
+    Values<double> upper = lower;
+    upper << infinity, faces ? infinity : 0, bodies ? infinity : 0;
+    Values<double> k = lower;
+    BoundedLeastSquares solver;
+    const double near = 1e-6 * misfit.hessian.trace(); // steps of this proximal weight: the least norm among equals
+    const Eigen::Matrix3d regular = misfit.hessian + near * Eigen::Matrix3d::Identity();
+    for (int step = 0; step < 10; ++step) {
+        (void)solver.solve(regular, Values<double>(misfit.linear + near * k), lower, upper, k);
+    }
+    return k;
+}
+
 } // namespace detail
 
 /// Cubes braced by face diagonals, body diagonals or both (which, the springs tell), after the method of San-Vicente,
@@ -74,38 +126,9 @@ template <std::floating_point Scalar>
     const bool bodies = has(Hex8::diagonals.back());
     require(faces || bodies, "springs", "face or body diagonals", "neither");
 
-    // In units of E and the side of the cube.
-    Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d linear = Eigen::Vector3d::Zero();
-    double target = 0;
-    const auto match = [&](const Eigen::Matrix<double, 2, 3>& row, double stress) {
-        hessian += row.row(0).transpose() * row.row(0) + 2 * row.row(1).transpose() * row.row(1);
-        linear += stress * row.row(0).transpose();
-        target += stress * stress;
-    };
-    if (small) {
-        match(detail::cube_stress_rate(solid.poisson), 1);
-    }
-    for (int s = 1; !small && s <= curves.samples; ++s) {
-        const double strain = curves.largest_strain * s / curves.samples;
-        const double contraction = curves.contraction ? curves.contraction(strain) : solid.poisson * strain;
-        const double stress = curves.stress ? curves.stress(strain) / solid.young : strain;
-        require(contraction < 1, "contraction", "values below 1", contraction);
-        require(std::isfinite(stress), "stress", "finite values", stress);
-        match(detail::cube_stress(1 + strain, 1 - contraction), stress);
-    }
-    const double infinity = std::numeric_limits<double>::infinity();
-    const Values<double> lower = Values<double>::Zero(3);
-    Values<double> upper = lower;
-    upper << infinity, faces ? infinity : 0, bodies ? infinity : 0;
-    Values<double> k = lower;
-    BoundedLeastSquares solver;
-    const double near = 1e-6 * hessian.trace(); // steps of this proximal weight: the least norm among equals
-    const Eigen::Matrix3d regular = hessian + near * Eigen::Matrix3d::Identity();
-    for (int step = 0; step < 10; ++step) {
-        (void)solver.solve(regular, Values<double>(linear + near * k), lower, upper, k);
-    }
-    const double missed = std::sqrt(maximum(0., target + k.dot(hessian * k - 2 * linear)) / target);
+    const detail::TensileMisfit misfit = detail::tensile_misfit(solid, curves);
+    const Values<double> k = detail::least_misfit(misfit, faces, bodies);
+    const double missed = misfit.relative(k);
 
     const Scalar stiffness_of[3] = {static_cast<Scalar>(solid.young * k(0)), static_cast<Scalar>(solid.young * k(1)),
                                     static_cast<Scalar>(solid.young * k(2))};

@@ -8,7 +8,7 @@
 
 namespace springfit {
 
-/// What a warning is about. The names (`to_string`) are stable: programs may act on them.
+/// The subject of a warning. The names (`to_string`) are stable: programs may act on them.
 enum class WarningCode {
     reference_ended_early,   ///< a motion of the reference ended before its last frame
     no_equilibrium,          ///< the reference found none under a load case

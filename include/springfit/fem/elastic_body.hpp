@@ -7,7 +7,7 @@
 
 namespace springfit::fem {
 
-/// What a plane body is: a thin sheet, free to change its thickness, or a slice of a long body, which cannot.
+/// The kind of a plane body: a thin sheet, free to change its thickness, or a slice of a long body, which cannot.
 enum class Plane { stress, strain };
 
 /// Where the volume measure theta enters the energy U(theta).
@@ -32,7 +32,7 @@ struct BodyKind {
     bool is_solid = false;    ///< neither plane nor a membrane
 };
 
-/// What statics and dynamics ask of an elastic body, whatever its cells and its material: `Model` is one.
+/// An elastic body as statics and dynamics see it, whatever its cells and its material: `Model` is one.
 ///
 /// They are compiled once for each dimension and scalar, not for each element and material; a virtual call is made
 /// once per assembly or sum over all cells.
@@ -53,7 +53,7 @@ public:
 
     /// Elastic energy at positions x `[Dim x n_nodes]`, J; not finite where the material does not allow x.
     [[nodiscard]] virtual Scalar energy(const Points<Dim, Scalar>& x) const = 0;
-    /// How well `energy` is known, whatever the positions, J.
+    /// Rounding error of `energy`, whatever the positions, J.
     [[nodiscard]] virtual Scalar energy_rounding() const = 0;
     /// Gradient of the energy `[Dim x n_nodes]`, N: the force that has to act on the nodes to hold them at x.
     [[nodiscard]] virtual Points<Dim, Scalar> internal_forces(const Points<Dim, Scalar>& x) const = 0;

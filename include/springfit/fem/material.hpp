@@ -70,7 +70,7 @@ template <Material M>
     return material.young * material.poisson / ((1 + material.poisson) * (1 - 2 * material.poisson));
 }
 
-/// What takes the place of lambda in plane stress: E nu / (1 - nu^2), Pa.
+/// The constant in the place of lambda in plane stress: E nu / (1 - nu^2), Pa.
 template <Material M>
 [[nodiscard]] double plane_stress_lambda(const M& material) {
     return material.young * material.poisson / (1 - material.poisson * material.poisson);

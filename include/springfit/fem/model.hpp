@@ -54,7 +54,7 @@ public:
     /// Elastic energy at positions x `[Dim x n_nodes]`, J; not finite where the material does not allow x.
     [[nodiscard]] Scalar energy(const Points<Dim, Scalar>& x) const override;
 
-    /// How well `energy` is known, whatever the positions: its terms are of the size of E times volume, J.
+    /// Rounding error of `energy`, whatever the positions: its terms are of the size of E times volume, J.
     [[nodiscard]] Scalar energy_rounding() const override {
         return 4 * std::numeric_limits<Scalar>::epsilon() * static_cast<Scalar>(m_material.young) * m_weights.sum();
     }
@@ -130,4 +130,5 @@ private:
 
 } // namespace springfit::fem
 
+#include <springfit/fem/detail/model_energy_impl.hpp>
 #include <springfit/fem/detail/model_impl.hpp>

@@ -105,7 +105,7 @@ equilibrium(const B& body, const Scenario<B::dimension, typename B::Scalar>& sce
     return Statics(body, options).equilibrium(scenario, time, start);
 }
 
-/// What finds the equilibria of a body under the default options: `fem::Model` is a model of the concept
+/// The solver for equilibria of a body under the default options: `fem::Model` is a model of the concept
 /// StaticReference.
 template <Elastic B>
 [[nodiscard]] Statics<B::dimension, typename B::Scalar> make_static_solver(const B& body) {

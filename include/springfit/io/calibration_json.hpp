@@ -7,7 +7,7 @@
 
 namespace springfit::io {
 
-/// What a calibration does not know of itself, for its files.
+/// Facts for the files of a calibration that it does not know itself.
 struct CalibrationSource {
     std::string input;            ///< the file that the body is from
     Json material;                ///< its constants

@@ -5,49 +5,16 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <type_traits>
 #include <utility>
-#include <vector>
-
-#include <hdf5.h>
 
 #include <springfit/io/atomic_file.hpp>
+#include <springfit/io/detail/hdf5_calls.hpp>
 
 /// A thin layer over HDF5's C interface: files and arrays of doubles, floats and ints that are closed on every way out.
 /// Every error is a FileError that names file and dataset; HDF5 itself prints nothing.
 namespace springfit::io::hdf5 {
 
-/// Numbers of entries along the axes, slowest first.
-using Shape = std::vector<hsize_t>;
-
-/// `[200 x 12 x 3]`
-[[nodiscard]] std::string to_text(const Shape& shape);
-
-/// Any HDF5 object, with the function that closes it.
-class Handle {
-public:
-    using Close = herr_t (*)(hid_t);
-    Handle() = default;
-    Handle(hid_t id, Close closer) : m_id(id), m_close(closer) {}
-    Handle(Handle&& other) noexcept : m_id(std::exchange(other.m_id, -1)), m_close(other.m_close) {}
-    Handle& operator=(Handle&& other) noexcept {
-        std::swap(m_id, other.m_id);
-        std::swap(m_close, other.m_close);
-        return *this;
-    }
-    ~Handle() { (void)close(); }
-
-    [[nodiscard]] bool is_open() const noexcept { return m_id >= 0; }
-    [[nodiscard]] hid_t get() const noexcept { return m_id; }
-    /// False where closing failed, as when what was still in memory could not be written.
-    [[nodiscard]] bool close() noexcept;
-
-private:
-    hid_t m_id = -1;
-    Close m_close = nullptr;
-};
-
-/// ReservedSpace on the disk for a file that is being written.
+/// Room on the disk for a file that is being written.
 ///
 /// HDF5 1.10 cannot stand a failed write: the program crashes when it ends. So room is made, or found missing, before
 /// HDF5 writes; what it keeps in memory always has its place already.
@@ -142,3 +109,4 @@ private:
 } // namespace springfit::io::hdf5
 
 #include <springfit/io/detail/hdf5_impl.hpp>
+#include <springfit/io/detail/hdf5_series_impl.hpp>

@@ -36,7 +36,7 @@ public:
     [[nodiscard]] int index_below(std::ptrdiff_t limit) const;
 
     [[noreturn]] void refuse(std::string_view expected, std::string_view found) const;
-    /// What is here, in few words: `null`, `"text"`, `an array of 3`.
+    /// The value in few words: `null`, `"text"`, `an array of 3`.
     [[nodiscard]] std::string found() const;
 
 private:

@@ -17,7 +17,8 @@ struct Model {
     using Scalar = ScalarType;
 
     SpringNetwork<Dim, Scalar> network;
-    /// How far data set each spring's stiffness, in [0, 1], below 1/2 the prior did [n_springs]; empty: not known.
+    /// The part of data in each spring's stiffness, in [0, 1], below 1/2 less than the prior's [n_springs]; empty: not
+    /// known.
     Values<Scalar> data_share{};
     std::vector<int> fixed;      ///< nodes that were clamped, ascending, each once
     Scalar stable_time_step = 0; ///< the largest step that explicit integration is sure to stand, s, > 0

@@ -12,7 +12,7 @@
 
 namespace springfit::io {
 
-/// What joins the nodes of a motion: the cells of a mesh, springs, or both.
+/// The connections between the nodes of a motion: the cells of a mesh, springs, or both.
 struct MotionTopology {
     std::optional<CellKind> kind; ///< of the cells; a linear one; none where there are no cells
     Eigen::MatrixXi cells;        ///< corners [corners per cell x n_cells]

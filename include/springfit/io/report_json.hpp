@@ -22,7 +22,7 @@ struct MotionErrors {
     NamedNumbers baselines;                                  ///< of every candidate, by method
 };
 
-/// What `report.json` holds. Field by field: docs/files.md.
+/// The contents of `report.json`. Field by field: docs/files.md.
 struct Report {
     Status status = Status::failed;
     std::string method; ///< of the model that was returned

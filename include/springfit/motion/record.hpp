@@ -14,7 +14,7 @@ struct RecordOptions {
     ProgressCallback progress{}; ///< called once per frame; returning false stops with the frames so far
 };
 
-/// What came of a recording.
+/// The result of a recording.
 template <int Dim, std::floating_point Scalar>
 struct Recording {
     Motion<Dim, Scalar> motion;        ///< every frame up to where the status says

@@ -141,7 +141,7 @@ record_static(const R& reference, const Scenario<R::dimension, typename R::Scala
     return record_statics(reference, {scenario}, {.time = time}).front();
 }
 
-/// What small loads would do, K u = f_ext with K at the rest positions: the displacement of each case `[Dim x
+/// The response to small loads, K u = f_ext with K at the rest positions: the displacement of each case `[Dim x
 /// n_nodes]`, m; empty where the clamps do not hold the body, where it is not finite, and where an interruption came
 /// first. Throws as `record_statics` does.
 template <StaticReference R>

@@ -37,7 +37,7 @@ struct NodalLoad {
     Amplitude<Scalar> amplitude;
 };
 
-/// What is done to a body: one load case. It names nodes only, so the same scenario drives the reference and the
+/// One load case: all that is done to a body. It names nodes only, so the same scenario drives the reference and the
 /// network.
 template <int Dim, std::floating_point Scalar>
 struct Scenario {

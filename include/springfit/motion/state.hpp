@@ -6,7 +6,7 @@
 
 namespace springfit {
 
-/// Where a body is at one time.
+/// The state of a body at one time.
 template <int Dim, std::floating_point Scalar>
 struct State {
     Scalar time = 0;                   ///< s

@@ -55,7 +55,7 @@ void validate(const EmbeddedSurface<Dim, Scalar>& surface, Index n_nodes) {
     }
 }
 
-/// Where the points of the surface are when the network's nodes are at `positions` `[Dim x n_points]`, m: see above.
+/// Positions of the surface's points when the network's nodes are at `positions` `[Dim x n_points]`, m: see above.
 template <int Dim, std::floating_point Scalar>
 [[nodiscard]] Points<Dim, Scalar> deform(const EmbeddedSurface<Dim, Scalar>& surface,
                                          const Points<Dim, Scalar>& rest_positions,
@@ -63,7 +63,7 @@ template <int Dim, std::floating_point Scalar>
     return deform<Dim, Scalar>(surface.from_nodes, surface.rest_positions, rest_positions, positions);
 }
 
-/// Where the points of the surface are in every frame of a network's motion: n_frames of `[Dim x n_points]`, m.
+/// Positions of the surface's points in every frame of a network's motion: n_frames of `[Dim x n_points]`, m.
 template <int Dim, std::floating_point Scalar>
 [[nodiscard]] std::vector<Points<Dim, Scalar>> deform(const EmbeddedSurface<Dim, Scalar>& surface,
                                                       const Motion<Dim, Scalar>& motion) {

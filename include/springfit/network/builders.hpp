@@ -7,7 +7,7 @@
 
 namespace springfit {
 
-/// Which springs a mesh gets besides its edges, whether its cells hold their volume, and what its masses are made of.
+/// The springs of a mesh besides its edges, whether its cells hold their volume, and what its masses are made of.
 template <std::floating_point Scalar>
 struct SpringOptions {
     bool diagonals = false;   ///< also the diagonals of quadrilaterals and hexahedra (faces and body)

@@ -86,7 +86,7 @@ void compute_accelerations(const SpringNetwork<Dim, Scalar>& network, const Poin
     }
 }
 
-/// Which second derivative of the elastic energy to take.
+/// The form of the second derivative of the elastic energy.
 enum class HessianForm {
     /// Springs k n n' + k (1 - l/L) (I - n n'), indefinite under compression; cells
     /// kappa/V_c (g g' + (V - V_c) d^2 V/dx^2), g = dV/dx, indefinite away from rest and where kappa < 0.

@@ -8,7 +8,7 @@
 
 namespace springfit {
 
-/// How far the fine nodes that a network carries are from where the reference had them.
+/// The distance of the fine nodes that a network carries from where the reference had them.
 struct EmbeddedError {
     MotionError by_network;   ///< under the network's own motion
     MotionError by_reference; ///< were the network's nodes to move as the reference does: what carrying alone costs

@@ -12,7 +12,7 @@
 
 namespace springfit {
 
-/// How far motions are from their references.
+/// The error of motions beside their references.
 struct MotionError {
     /// sqrt( sum |x - x_ref|^2 / sum |x_ref - x_rest|^2 ) over the free nodes, frames and cases of the set: 0 is the
     /// reference itself, 1 as bad as not moving at all; infinite where a case could not be simulated to its end.
@@ -66,7 +66,7 @@ FreeNodes free_of(const Motion<Dim, Scalar>& reference, Index n_nodes) {
     return FreeNodes(n_nodes, reference.clamped);
 }
 
-/// What static cases share that have their clamps in common: each once, and which is whose.
+/// The stiffness that static cases with the same clamps share: each once, and the number of each case's.
 template <int Dim, std::floating_point Scalar>
 struct StiffnessByClamps {
     std::vector<std::unique_ptr<ClampedStiffness<SpringNetwork<Dim, Scalar>>>> held;

@@ -14,7 +14,7 @@
 /// baselines for `gauss_newton` and `ipopt::trajectory`, which need tens to hundreds of times fewer simulations.
 namespace springfit::search {
 
-/// Where a search looks: lower <= theta <= upper, besides the bounds of the problem itself.
+/// The box that a search looks in: lower <= theta <= upper, besides the bounds of the problem itself.
 struct SearchBox {
     double lower = -3; ///< of every theta, finite; of stiffness a factor exp(-3) = 1/20
     double upper = 3;  ///< finite, >= lower

@@ -5,8 +5,8 @@
 
 namespace springfit::search {
 
-/// What a search found, and when. `fit.history` is the best J so far after each iteration; `fit.rejected` counts points
-/// that could not be simulated or were unstable.
+/// The result of a search, and its times. `fit.history` is the best J so far after each iteration; `fit.rejected`
+/// counts points that could not be simulated or were unstable.
 struct SearchReport {
     TrajectoryReport fit;
     std::vector<double> seconds; ///< since the start, of each entry of `fit.history`

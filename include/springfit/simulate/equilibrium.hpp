@@ -15,7 +15,7 @@ struct EquilibriumOptions {
     int max_iterations = 500;        ///< Newton iterations, >= 1
 };
 
-/// Where a network comes to rest.
+/// The rest of a network under loads.
 template <int Dim, std::floating_point Scalar>
 struct Equilibrium {
     Status status = Status::failed;
@@ -73,7 +73,7 @@ void check(const Network& network, const Scenario<Dim, Scalar>& scenario,
             text(network.n_nodes(), " columns, one per node"), options.start.cols());
 }
 
-/// How far a network that is held at all may go from its start, m: a thousand times its size.
+/// The farthest that a network that is held at all may go from its start, m: a thousand times its size.
 template <class Network, int Dim, std::floating_point Scalar>
 Scalar reach(const Network& network, const Points<Dim, Scalar>& start) {
     const auto extent = [](const Points<Dim, Scalar>& x) {

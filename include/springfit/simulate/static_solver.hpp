@@ -23,7 +23,7 @@ public:
     [[nodiscard]] const Values<Scalar>& masses() const { return m_network.mass; }
 
     /// The positions `[Dim x n_nodes]` that `equilibrium` ends with, whether it is stable or not.
-    /// What the clamps determine is kept while the same nodes are clamped.
+    /// The factor and all else that depends on the clamps alone is kept while the same nodes are clamped.
     Status solve_equilibrium(const Scenario<Dim, Scalar>& scenario, Scalar time, Points<Dim, Scalar>& positions);
 
     /// K u = f with K at the rest positions and f the loads and the springs' own forces there: displacement

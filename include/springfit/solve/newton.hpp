@@ -27,7 +27,7 @@ struct NewtonOptions {
     Scalar loose_tolerance = 0;     ///< the same far from the minimum, where the gradient falls slowly; 0: no looser
 };
 
-/// How a Newton minimisation ended.
+/// The outcome of a Newton minimisation.
 template <std::floating_point Scalar>
 struct NewtonReport {
     Status status = Status::failed;
@@ -35,6 +35,82 @@ struct NewtonReport {
     Scalar energy = 0;
     Scalar gradient_max = 0; ///< largest entry of the gradient, at the point returned
 };
+
+namespace detail {
+
+/// The rounding error of a problem's energy at the coordinates last used; 0 where it does not say.
+template <SmoothProblem P>
+[[nodiscard]] typename P::Scalar energy_rounding(P& problem) {
+    if constexpr (requires { problem.energy_rounding(); }) {
+        return problem.energy_rounding();
+    } else {
+        return typename P::Scalar(0);
+    }
+}
+
+/// Newton's step from x, by one linear solve, or by a second one with a semidefinite Hessian where the first meets
+/// negative curvature. False where the solver fails.
+template <SmoothProblem P, class Solver>
+[[nodiscard]] bool newton_step(P& problem, const Values<typename P::Scalar>& x,
+                               const Values<typename P::Scalar>& gradient, Solver& solver, typename P::Scalar tolerance,
+                               Values<typename P::Scalar>& step) {
+    if constexpr (requires { solver.turn(problem.positions(x)); }) {
+        solver.turn(problem.positions(x));
+    }
+    const auto solve = [&] { return solver.solve(problem.hessian(x), -gradient, step, tolerance); };
+    bool solved = solve();
+    if constexpr (requires { problem.use_semidefinite() && solver.met_negative_curvature(); }) {
+        if (solved && solver.met_negative_curvature() && problem.use_semidefinite()) {
+            solved = solve();
+        }
+    }
+    return solved;
+}
+
+/// The end of a line search.
+template <std::floating_point Scalar>
+struct LineSearchPoint {
+    Values<Scalar> x;
+    Values<Scalar> gradient;
+    Scalar energy = 0;
+    Scalar gradient_max = 0;
+    bool falls = false; ///< the energy falls to it, by more than its rounding
+};
+
+/// Halves a step from x until the energy falls (Armijo) or, where the energy no longer resolves it, the gradient does.
+/// `start` has the energy and the gradient's largest entry at x. False where no such point was found.
+template <SmoothProblem P>
+[[nodiscard]] bool line_search(P& problem, const Values<typename P::Scalar>& x,
+                               const Values<typename P::Scalar>& gradient, const Values<typename P::Scalar>& step,
+                               const NewtonReport<typename P::Scalar>& start,
+                               LineSearchPoint<typename P::Scalar>& found) {
+    using Scalar = typename P::Scalar;
+    constexpr Scalar epsilon = std::numeric_limits<Scalar>::epsilon();
+    const Scalar slope = gradient.dot(step);
+    const Scalar rounding =
+        std::max(energy_rounding(problem), 16 * epsilon * std::max(std::abs(start.energy), std::abs(slope)));
+    Scalar length = 1;
+    for (int halving = 0; halving < 40 && slope < 0; ++halving, length /= 2) {
+        found.x = x + length * step;
+        found.energy = problem.energy(found.x);
+        if (!std::isfinite(found.energy)) {
+            continue;
+        }
+        const bool unresolved = std::abs(found.energy - start.energy) <= rounding;
+        found.falls = !unresolved && found.energy <= start.energy + Scalar(1e-4) * length * slope;
+        if (!found.falls && !unresolved) {
+            continue;
+        }
+        problem.gradient(found.x, found.gradient);
+        found.gradient_max = max_norm(found.gradient);
+        if (std::isfinite(found.gradient_max) && (found.falls || found.gradient_max < start.gradient_max)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+} // namespace detail
 
 /// Minimises a smooth problem from `x` by Newton's method with a backtracking line search (Armijo; where the energy no
 /// longer resolves the step, the gradient must fall instead).
@@ -48,20 +124,12 @@ template <SmoothProblem P, class Solver>
 [[nodiscard]] NewtonReport<typename P::Scalar> minimise(P& problem, Values<typename P::Scalar>& x, Solver& solver,
                                                         const NewtonOptions<typename P::Scalar>& options) {
     using Scalar = typename P::Scalar;
-    constexpr Scalar epsilon = std::numeric_limits<Scalar>::epsilon();
 
     NewtonReport<Scalar> report;
     Values<Scalar> gradient(x.size());
     Values<Scalar> step;
-    Values<Scalar> trial;
-    Values<Scalar> trial_gradient(x.size());
-    const auto noise = [&] { // at the coordinates last used
-        if constexpr (requires { problem.energy_rounding(); }) {
-            return problem.energy_rounding();
-        } else {
-            return Scalar(0);
-        }
-    };
+    detail::LineSearchPoint<Scalar> trial;
+    trial.gradient.resize(x.size());
 
     report.energy = problem.energy(x);
     problem.gradient(x, gradient);
@@ -78,48 +146,19 @@ template <SmoothProblem P, class Solver>
             report.status = Status::converged;
             return report;
         }
-        if constexpr (requires { solver.turn(problem.positions(x)); }) {
-            solver.turn(problem.positions(x));
-        }
-        const auto solve = [&] { return solver.solve(problem.hessian(x), -gradient, step, linear_tolerance); };
-        bool solved = solve();
-        if constexpr (requires { problem.use_semidefinite() && solver.met_negative_curvature(); }) {
-            if (solved && solver.met_negative_curvature() && problem.use_semidefinite()) {
-                solved = solve();
-            }
-        }
-        if (!solved) {
+        if (!detail::newton_step(problem, x, gradient, solver, linear_tolerance, step)) {
             report.status = Status::failed;
             return report;
         }
-        const Scalar slope = gradient.dot(step);
-        const Scalar rounding = std::max(noise(), 16 * epsilon * std::max(std::abs(report.energy), std::abs(slope)));
-        Scalar length = 1;
-        bool accepted = false;
-        for (int halving = 0; halving < 40 && slope < 0; ++halving, length /= 2) {
-            trial = x + length * step;
-            const Scalar energy = problem.energy(trial);
-            if (!std::isfinite(energy)) {
-                continue;
-            }
-            const bool unresolved = std::abs(energy - report.energy) <= rounding;
-            const bool falls = !unresolved && energy <= report.energy + Scalar(1e-4) * length * slope;
-            if (!falls && !unresolved) {
-                continue;
-            }
-            problem.gradient(trial, trial_gradient);
-            const Scalar trial_max = max_norm(trial_gradient);
-            if (std::isfinite(trial_max) && (falls || trial_max < report.gradient_max)) {
-                accepted = true;
-                n_creeping = !falls && trial_max > report.gradient_max / 2 ? n_creeping + 1 : 0;
-                const Scalar ratio = trial_max / report.gradient_max;
-                linear_tolerance = std::clamp(ratio * ratio, options.linear_tolerance, loosest);
-                report.energy = energy;
-                report.gradient_max = trial_max;
-                x.swap(trial);
-                gradient.swap(trial_gradient);
-                break;
-            }
+        const bool accepted = detail::line_search(problem, x, gradient, step, report, trial);
+        if (accepted) {
+            n_creeping = !trial.falls && trial.gradient_max > report.gradient_max / 2 ? n_creeping + 1 : 0;
+            const Scalar ratio = trial.gradient_max / report.gradient_max;
+            linear_tolerance = std::clamp(ratio * ratio, options.linear_tolerance, loosest);
+            report.energy = trial.energy;
+            report.gradient_max = trial.gradient_max;
+            x.swap(trial.x);
+            gradient.swap(trial.gradient);
         }
         if constexpr (requires { problem.is_lost(x); }) {
             if (accepted && problem.is_lost(x)) {

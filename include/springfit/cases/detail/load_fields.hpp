@@ -12,7 +12,7 @@
 
 namespace springfit::detail {
 
-/// What random fields of force on a body are laid out by. All of it goes by positions, none of it by node numbers.
+/// Draws random fields of force on a body. All of it goes by positions, none of it by node numbers.
 template <int Dim, std::floating_point Scalar>
 class LoadFieldSampler {
 public:

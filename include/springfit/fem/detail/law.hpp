@@ -8,7 +8,8 @@
 
 namespace springfit::fem::detail {
 
-/// What a material says at one deformation gradient F: its shear energy per rest volume and its volume measure theta.
+/// The response of a material to one deformation gradient F: its shear energy per rest volume and its volume measure
+/// theta.
 template <int Rows, int Cols, std::floating_point Scalar>
 struct Response {
     Invariant<Rows, Cols, Scalar> shear;

@@ -70,7 +70,7 @@ public:
         return m_body->energy(nodes) - external_forces.cwiseProduct(nodes - m_body->rest_positions()).sum();
     }
     [[nodiscard]] Scalar energy_rounding() const { return m_body->energy_rounding(); }
-    /// Where all nodes are for the free coordinates, m.
+    /// Positions of all nodes for the free coordinates, m.
     [[nodiscard]] const Nodes& positions(const Values<Scalar>& values) {
         m_free.scatter(values, nodes);
         return nodes;

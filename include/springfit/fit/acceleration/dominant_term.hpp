@@ -7,7 +7,7 @@
 
 namespace springfit {
 
-/// Where the sweeps begin.
+/// The start of the sweeps.
 enum class SweepStart {
     one_pass, ///< the result of `one_pass`
     given,    ///< `initial`, or the prior where that is empty

@@ -36,7 +36,7 @@ public:
         }
     };
 
-    /// Where an unknown occurs: in which term and at which of its columns.
+    /// One occurrence of an unknown: the term, and the column of that term.
     struct Occurrence {
         int term;
         int position;

@@ -12,7 +12,7 @@
 
 namespace springfit {
 
-/// What a node's acceleration mismatch counts, besides the caller's own `node_weights`.
+/// The weight of a node's acceleration mismatch, besides the caller's own `node_weights`.
 enum class NodeWeighting {
     acceleration, ///< w_i = 1: every acceleration alike
     mass,         ///< w_i = m_i

@@ -10,7 +10,7 @@
 
 namespace springfit {
 
-/// What can be fitted of a spring; each enters the acceleration linearly.
+/// The values of a spring that can be fitted; each enters the acceleration linearly.
 enum class ParameterKind {
     stiffness, ///< k_e, N/m
     damping,   ///< c_e, N s/m
@@ -31,7 +31,7 @@ struct KindOptions {
     Values<double> prior;  ///< what a spring gets that no motion excites [n_springs]; empty: the network's value
 };
 
-/// Which values of the springs are unknown.
+/// The unknowns among the springs' values.
 struct ParameterOptions {
     KindOptions<ParameterKind::stiffness> stiffness{};
     KindOptions<ParameterKind::damping> damping{};

@@ -26,7 +26,7 @@ struct AccelerationProblem {
     [[nodiscard]] bool held(Index u) const { return !(lower(u) < upper(u)); }
 };
 
-/// What a solver of the acceleration fit found.
+/// The result of a solver of the acceleration fit.
 struct AccelerationReport {
     Status status = Status::failed;
     Values<double> theta;             ///< [n_unknowns], within the bounds to the last bit
@@ -46,7 +46,7 @@ struct AccelerationReport {
     std::vector<SpringParameter> without_unknown; ///< springs between nodes that never move freely: they kept theirs
 };
 
-/// How far theta is from optimal, free of units: with x = sqrt(H_uu) theta_u and its gradient q,
+/// Distance of theta from the optimum, free of units: with x = sqrt(H_uu) theta_u and its gradient q,
 /// max |x - clip(x - q, bounds)| / max |q at theta = 0|; 0 exactly at the minimiser, NaN where anything is. `gradient`
 /// is that of Phi at theta.
 [[nodiscard]] inline double kkt_residual(const AccelerationProblem& problem, const Values<double>& theta,

@@ -9,7 +9,7 @@
 
 namespace springfit {
 
-/// What matching of motion can fit.
+/// The values that matching of motion can fit.
 enum class MotionParameter {
     stiffness,   ///< k_e = k_e^0 exp(theta)
     damping,     ///< c_e = c_e^0 exp(theta)
@@ -37,7 +37,7 @@ struct MotionParameterOptions {
     std::vector<int> ties{};
 };
 
-/// Which values are unknown, and what theta means. The network's own values are the prior, theta = 0.
+/// The unknown values, and the meaning of theta. The network's own values are the prior, theta = 0.
 struct TrajectoryParameterOptions {
     MotionParameterOptions stiffness{.fit = true};
     MotionParameterOptions damping{};

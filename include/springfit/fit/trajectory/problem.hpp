@@ -3,7 +3,7 @@
 
 #include <springfit/core/execution.hpp>
 #include <springfit/core/status.hpp>
-#include <springfit/fit/trajectory/detail/windows.hpp>
+#include <springfit/fit/trajectory/detail/window_simulation.hpp>
 #include <springfit/fit/trajectory/parameters.hpp>
 #include <springfit/motion/motion.hpp>
 
@@ -15,7 +15,7 @@ enum class PredictionRule {
     implicit_euler ///< first order; damps what the step does not resolve
 };
 
-/// What to match, and how.
+/// Options of trajectory matching, whatever the engine.
 struct TrajectoryOptions {
     TrajectoryParameterOptions parameters{};
     double prior_weight = 1e-4; ///< lambda >= 0: weight of |theta|^2 beside cases of unit size
@@ -134,4 +134,5 @@ private:
 
 } // namespace springfit
 
+#include <springfit/fit/trajectory/detail/point_impl.hpp>
 #include <springfit/fit/trajectory/detail/problem_impl.hpp>

@@ -13,62 +13,6 @@ namespace springfit::io::hdf5 {
 
 namespace detail {
 
-/// While it lives, HDF5 prints no errors; afterwards it does what it did before.
-class Quiet {
-public:
-    Quiet() {
-        H5Eget_auto2(H5E_DEFAULT, &m_print, &m_data);
-        H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-    }
-    Quiet(const Quiet&) = delete;
-    Quiet& operator=(const Quiet&) = delete;
-    ~Quiet() { H5Eset_auto2(H5E_DEFAULT, m_print, m_data); }
-
-private:
-    H5E_auto2_t m_print = nullptr;
-    void* m_data = nullptr;
-};
-
-/// What HDF5 says of the last error: the system's reason where there is one.
-[[nodiscard]] inline std::string last_error() {
-    std::string innermost;
-    const auto visit = [](unsigned depth, const H5E_error2_t* error, void* result) -> herr_t {
-        if (depth == 0 && error->desc != nullptr) {
-            *static_cast<std::string*>(result) = error->desc;
-        }
-        return 0;
-    };
-    H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, visit, &innermost);
-    constexpr std::string_view mark = "error message = '";
-    if (const auto begin = innermost.find(mark); begin != std::string::npos) {
-        const auto reason = innermost.substr(begin + mark.size());
-        return reason.substr(0, reason.find('\''));
-    }
-    return innermost.empty() ? "HDF5 gives no reason" : innermost;
-}
-
-template <class T>
-[[nodiscard]] hid_t memory_type() {
-    if constexpr (std::is_same_v<T, double>) {
-        return H5T_NATIVE_DOUBLE;
-    } else if constexpr (std::is_same_v<T, float>) {
-        return H5T_NATIVE_FLOAT;
-    } else {
-        static_assert(std::is_same_v<T, int>, "arrays of double, float and int");
-        return H5T_NATIVE_INT;
-    }
-}
-
-/// Floating-point numbers are stored as float64, whole numbers as int32, in the byte order of x86 and Arm.
-template <class T>
-[[nodiscard]] hid_t file_type() {
-    return std::is_floating_point_v<T> ? H5T_IEEE_F64LE : H5T_STD_I32LE;
-}
-
-[[nodiscard]] inline Handle simple_space(const Shape& shape, const Shape& maximum) {
-    return {H5Screate_simple(static_cast<int>(shape.size()), shape.data(), maximum.data()), H5Sclose};
-}
-
 /// Refuses what cannot be read as numbers of type T.
 template <class T>
 void check_type(const File& file, const std::string& dataset, const Handle& handle) {
@@ -80,31 +24,7 @@ void check_type(const File& file, const std::string& dataset, const Handle& hand
     }
 }
 
-[[nodiscard]] inline Shape shape_of(const Handle& dataset) {
-    const Handle space(H5Dget_space(dataset.get()), H5Sclose);
-    const int rank = H5Sget_simple_extent_ndims(space.get());
-    Shape shape(static_cast<std::size_t>(std::max(rank, 0)));
-    H5Sget_simple_extent_dims(space.get(), shape.data(), nullptr);
-    return shape;
-}
-
 } // namespace detail
-
-inline std::string to_text(const Shape& shape) {
-    std::string result = "[";
-    for (std::size_t axis = 0; axis < shape.size(); ++axis) {
-        result += text(axis > 0 ? " x " : "", shape[axis]);
-    }
-    return result + "]";
-}
-
-inline bool Handle::close() noexcept {
-    if (!is_open()) {
-        return true;
-    }
-    const detail::Quiet quiet;
-    return m_close(std::exchange(m_id, -1)) >= 0;
-}
 
 inline ReservedSpace::ReservedSpace(const std::filesystem::path& path, std::string shown)
     : m_descriptor(path, O_RDWR | O_CREAT), m_name(std::move(shown)) {
@@ -336,65 +256,6 @@ inline void File::close() {
 
 inline void File::refuse(const std::string& dataset, std::string_view problem) const {
     throw FileError(m_name, text(dataset, ": ", problem));
-}
-
-inline Series::Series(const File& file, std::string dataset, Shape row)
-    : m_file(file.name()), m_reserved(file.m_reserved), m_name(std::move(dataset)), m_row(std::move(row)) {
-    const detail::Quiet quiet;
-    for (const hsize_t size : m_row) {
-        m_row_bytes *= std::max<hsize_t>(size, 1);
-    }
-    constexpr hsize_t chunk_bytes = 65536; // of small rows there are several in a chunk
-    Shape chunk{std::max<hsize_t>(1, chunk_bytes / m_row_bytes)};
-    Shape shape{0};
-    Shape maximum{H5S_UNLIMITED};
-    for (const hsize_t size : m_row) {
-        chunk.push_back(std::max<hsize_t>(size, 1));
-        shape.push_back(size);
-        maximum.push_back(size);
-    }
-    const Handle space = detail::simple_space(shape, maximum);
-    const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-    H5Pset_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data());
-    const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
-    H5Pset_chunk_cache(access.get(), 1, chunk_bytes, H5D_CHUNK_CACHE_W0_DEFAULT); // see ReservedSpace::make
-    file.make_room(0);
-    m_dataset = file.create_dataset(m_name, H5T_IEEE_F64LE, space.get(), properties.get(), access.get());
-}
-
-template <class T>
-void Series::append(const T* values) {
-    const detail::Quiet quiet;
-    m_reserved->make(m_dataset.get(), m_row_bytes);
-    Shape shape{m_rows + 1};
-    Shape start{m_rows};
-    Shape count{1};
-    for (const hsize_t size : m_row) {
-        shape.push_back(size);
-        start.push_back(0);
-        count.push_back(size);
-    }
-    bool written = H5Dset_extent(m_dataset.get(), shape.data()) >= 0;
-    if (written) {
-        const Handle in_file(H5Dget_space(m_dataset.get()), H5Sclose);
-        const Handle in_memory = detail::simple_space(count, count);
-        written =
-            H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) >= 0 &&
-            H5Dwrite(m_dataset.get(), detail::memory_type<T>(), in_memory.get(), in_file.get(), H5P_DEFAULT, values) >=
-                0;
-    }
-    if (!written) {
-        throw FileError(m_file, text(m_name, ": cannot be written: ", detail::last_error()));
-    }
-    ++m_rows;
-}
-
-inline void Series::close() {
-    const detail::Quiet quiet;
-    m_reserved->make(m_dataset.get(), m_row_bytes);
-    if (!m_dataset.close()) {
-        throw FileError(m_file, text(m_name, ": cannot be written: ", detail::last_error()));
-    }
 }
 
 } // namespace springfit::io::hdf5

@@ -58,13 +58,13 @@ inline constexpr std::array<std::pair<char, std::string_view>, 5> xml_entities{
     return result;
 }
 
-/// Where one frame of a dataset can be seen by itself, with three components: not every reader of XDMF takes a slice of
-/// an array, or vectors of two components.
+/// The view of one frame of a dataset by itself, with three components: not every reader of XDMF takes a slice of an
+/// array, or vectors of two components.
 [[nodiscard]] inline std::string frame_view(const std::string& dataset, std::size_t frame) {
     return text("/frames/", frame, '/', attribute_name(dataset));
 }
 
-/// What the XDMF file of a motion tells about its HDF5 file.
+/// The XDMF file of a motion, as far as it describes its HDF5 file.
 struct XdmfMotion {
     std::string h5_name; ///< relative to the XDMF file
     int dimension;
@@ -124,7 +124,7 @@ struct XdmfMotion {
     return result + "</Domain>\n</Xdmf>\n";
 }
 
-/// Where an XDMF file of any program points: to which HDF5 file, and what kind of cells it names, if one that is known.
+/// The HDF5 file that an XDMF file of any program points to, and the kind of cells that it names, if one that is known.
 struct XdmfTarget {
     std::filesystem::path h5;
     std::optional<CellKind> kind;

@@ -17,8 +17,7 @@ struct SearchLimits {
 /// Thrown through pagmo to end its algorithm early.
 struct SearchEnd {};
 
-/// What a search has seen so far: evaluates, keeps the best stable point, ends the search where budget or callback say
-/// so.
+/// The record of a search: evaluates, keeps the best stable point, ends the search where budget or callback say so.
 template <int Dim>
 class SearchRecord {
 public:

@@ -11,8 +11,8 @@ namespace springfit::detail {
 /// Added to the diagonal of the Hessian, relative to its largest entry, where nothing may hold a node.
 inline constexpr double statics_floor = 1e-9;
 
-/// What the equilibria of a network under the same clamps have in common: the pattern of the stiffness and its factor
-/// at rest. Immutable, so threads may share it. Keeps a reference to the network.
+/// Shared by the equilibria of a network under the same clamps: the pattern of the stiffness and its factor at rest.
+/// Immutable, so threads may share it. Keeps a reference to the network.
 template <class Network>
 class ClampedStiffness {
 public:

@@ -6,7 +6,7 @@
 
 namespace springfit::detail {
 
-/// What of a scenario changes in time: the rest is looked up once per frame.
+/// The part of a scenario that changes in time; the rest is looked up once per frame.
 template <int Dim, std::floating_point Scalar>
 class DrivenScenario {
 public:

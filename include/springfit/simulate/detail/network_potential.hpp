@@ -54,7 +54,7 @@ public:
         return !((positions(x) - m_start).cwiseAbs().maxCoeff() <= m_reach);
     }
 
-    /// Where all nodes are for the free coordinates x, m.
+    /// Positions of all nodes for the free coordinates x, m.
     [[nodiscard]] const Points<Dim, Scalar>& positions(const Values<Scalar>& x) {
         free_nodes().template scatter<Dim, Scalar>(x, m_points);
         return m_points;

@@ -111,7 +111,7 @@ private:
         }
     }
 
-    /// What theta less the scaled gradient would take beyond a bound goes there, with the gradient following.
+    /// Moves unknowns to the bound that theta less the scaled gradient would take them beyond; the gradient follows.
     void choose_sides() {
         m_changes = 0;
         bool any = false;

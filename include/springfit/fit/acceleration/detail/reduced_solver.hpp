@@ -102,7 +102,8 @@ private:
     [[nodiscard]] double factor_cost() const { return m_factor->flops(); }
     [[nodiscard]] double solve_cost() const { return solve_slowness * 4 * m_factor->n_entries(); }
 
-    /// Whether a factor is expected to be quicker, after `iterations` that made the gradient `reduced` times smaller.
+    /// True where a factor is expected to be quicker, after `iterations` that made the gradient `reduced` times
+    /// smaller.
     bool factor_is_quicker(int iterations, double reduced, double largest_now) {
         const int spent = m_n_products - m_before;
         if (spent < patience || iterations % 50 != 0 || m_curvature.size() > most_factorised) {

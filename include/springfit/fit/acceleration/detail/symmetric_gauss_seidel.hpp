@@ -59,7 +59,7 @@ public:
         }
     }
 
-    /// Inner products accumulated by a sweep.
+    /// Inner products that a solve accumulates.
     struct Sums {
         double xb = 0; ///< x' b
         double xx = 0; ///< x' x

@@ -28,7 +28,7 @@ inline void add_scaled(const ColumnBlock& from, const Eigen::ArrayXd& factors, d
     });
 }
 
-/// Whether a value of some column is above the bound of that column.
+/// True where a value of some column is above a part of the bound of that column.
 inline bool any_above(const Eigen::ArrayXd& values, double part, const Eigen::ArrayXd& bounds) {
     for (Index c = 0; c < values.size(); ++c) {
         if (values(c) > part * bounds(c)) {
@@ -38,7 +38,7 @@ inline bool any_above(const Eigen::ArrayXd& values, double part, const Eigen::Ar
     return false;
 }
 
-/// What a static case or an implicit step solves for each column of a block, over the free nodes:
+/// The equations of a static case or an implicit step, for each column of a block, over the free nodes:
 ///
 ///     w M (y - target) - f_elastic(y) + d D(old) (y - old) = external ,
 ///
@@ -84,7 +84,7 @@ struct ImplicitSystem {
         hold(product);
     }
 
-    /// What is out of balance: external + f_elastic(y) - w M (y - target) - d D(old) (y - old).
+    /// The force out of balance: external + f_elastic(y) - w M (y - target) - d D(old) (y - old).
     void unbalanced(const ColumnBlock& y, const ColumnBlock& target, const ColumnBlock& old,
                     const ColumnBlock& external, ColumnBlock& force) const {
         force = external;
@@ -225,26 +225,54 @@ bool block_conjugate_gradients(const Factor& factor, const Multiply& multiply, c
     return system.is_definite();
 }
 
+/// The largest force of each column, on a node that is loaded or out of balance.
+inline Eigen::ArrayXd largest_forces(const ColumnBlock& external, const Eigen::ArrayXd& unbalanced) {
+    Eigen::ArrayXd largest = column_maxima(external);
+    for (Index c = 0; c < largest.size(); ++c) {
+        largest(c) = std::max(largest(c), unbalanced(c));
+    }
+    return largest;
+}
+
+/// The force out of balance at which a column counts as balanced: a part of its largest one, but no less than rounding.
+template <int Dim>
+Eigen::ArrayXd balance_goals(const ImplicitSystem<Dim>& system, const ColumnBlock& y, const Eigen::ArrayXd& largest) {
+    constexpr double tolerance = 1e-10;
+    constexpr double epsilon = std::numeric_limits<double>::epsilon();
+    double stiffest = system.inertia > 0 ? system.inertia * system.network.mass.maxCoeff() : 0.;
+    stiffest += system.network.stiffness.maxCoeff() + system.damping * system.network.damping.maxCoeff();
+    const double rounding = 64 * epsilon * stiffest * y.cwiseAbs().maxCoeff(); // some 16 springs at a node
+    Eigen::ArrayXd goal(largest.size());
+    for (Index c = 0; c < goal.size(); ++c) {
+        goal(c) = std::max(tolerance * largest(c), rounding);
+    }
+    return goal;
+}
+
+/// Takes columns that a line search no longer moves, of vanishing `length`, for balanced. False where one is not near.
+inline bool settle_stuck(const Eigen::ArrayXd& length, const Eigen::ArrayXd& unbalanced, Eigen::ArrayXd& goal) {
+    for (Index c = 0; c < length.size(); ++c) {
+        if (length(c) > 0 && length(c) < 1e-8) {
+            if (unbalanced(c) > 1e4 * goal(c)) {
+                return false;
+            }
+            goal(c) = std::max(unbalanced(c), goal(c));
+        }
+    }
+    return true;
+}
+
 /// Solves an implicit system for all columns by Newton's method with a line search, from `y` as it stands (clamped
 /// nodes where they shall be). False where some column did not come to balance.
 template <int Dim>
 bool solve_implicit(const ImplicitSystem<Dim>& system, const ColumnBlock& target, const ColumnBlock& old,
                     const ColumnBlock& external, ColumnBlock& y) {
     constexpr int max_iterations = 200;
-    constexpr double tolerance = 1e-10; // of the largest force that moves a node
-    constexpr double epsilon = std::numeric_limits<double>::epsilon();
     ColumnBlock force;
     system.unbalanced(y, target, old, external, force);
     Eigen::ArrayXd unbalanced = column_maxima(force);
-    double stiffest = system.inertia > 0 ? system.inertia * system.network.mass.maxCoeff() : 0.;
-    stiffest += system.network.stiffness.maxCoeff() + system.damping * system.network.damping.maxCoeff();
-    const double rounding = 64 * epsilon * stiffest * y.cwiseAbs().maxCoeff(); // some 16 springs at a node
-    Eigen::ArrayXd largest = column_maxima(external);
-    Eigen::ArrayXd goal = largest;
-    for (Index c = 0; c < goal.size(); ++c) {
-        largest(c) = std::max(largest(c), unbalanced(c));
-        goal(c) = std::max(tolerance * largest(c), rounding);
-    }
+    const Eigen::ArrayXd largest = largest_forces(external, unbalanced);
+    Eigen::ArrayXd goal = balance_goals(system, y, largest);
     bool near = true;
     Eigen::ArrayXd energy = system.energy(y, target, old, external);
     ColumnBlock direction;
@@ -272,7 +300,7 @@ bool solve_implicit(const ImplicitSystem<Dim>& system, const ColumnBlock& target
         const Eigen::ArrayXd norm = column_dots(force, force);
         Eigen::ArrayXd length(goal.size());
         std::transform(unbalanced.begin(), unbalanced.end(), goal.begin(), length.begin(),
-                       [](double force, double aim) { return force > aim ? 1. : 0.; });
+                       [](double left, double aim) { return left > aim ? 1. : 0.; });
         ColumnBlock trial;
         ColumnBlock trial_force;
         Eigen::ArrayXd trial_energy;
@@ -294,13 +322,8 @@ bool solve_implicit(const ImplicitSystem<Dim>& system, const ColumnBlock& target
             }
         }
         if (!accepted) { // a column at rounding, or without descent: the others go on
-            for (Index c = 0; c < length.size(); ++c) {
-                if (length(c) > 0 && length(c) < 1e-8) { // stuck
-                    if (unbalanced(c) > 1e4 * goal(c)) {
-                        return false;
-                    }
-                    goal(c) = std::max(unbalanced(c), goal(c));
-                }
+            if (!settle_stuck(length, unbalanced, goal)) {
+                return false;
             }
             continue;
         }
