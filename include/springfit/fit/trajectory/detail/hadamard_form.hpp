@@ -5,7 +5,6 @@
 #include <vector>
 
 #include <springfit/core/execution.hpp>
-#include <springfit/fit/trajectory/detail/corotated_block_preconditioner.hpp>
 #include <springfit/fit/trajectory/detail/spring_block.hpp>
 #include <springfit/fit/trajectory/parameters.hpp>
 
