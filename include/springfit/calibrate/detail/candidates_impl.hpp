@@ -239,6 +239,13 @@ Candidates<Dim> make_candidates(const std::vector<NamedNetwork<Dim>>& given, con
     require(options.zeta >= 0 && std::isfinite(options.zeta), "zeta", "a value not below 0", options.zeta);
     require(!options.start || *options.start < given.size(), "start", text("a number in [0, ", given.size(), ")"),
             options.start.value_or(0));
+    require(options.prior_weight >= 0 && std::isfinite(options.prior_weight), "prior_weight", "a weight not below 0",
+            options.prior_weight);
+    require(options.horizon >= 0, "horizon", "0 or a number of frames", options.horizon);
+    require(options.steps_per_frame >= 1, "steps_per_frame", "at least one", options.steps_per_frame);
+    require(options.matching_iterations >= 0, "matching_iterations", "a number not below 0",
+            options.matching_iterations);
+    require(options.matching_tolerance > 0, "matching_tolerance", "a positive value", options.matching_tolerance);
     require(options.matching_seconds > 0, "matching_seconds", "a positive time, s", options.matching_seconds);
     for (const auto& named : given) {
         validate(named.network);

@@ -72,14 +72,14 @@ record_motions(const CaseRecorder<Dim, Scalar>& reference, std::vector<LoadCase<
             continue;
         }
         if (status != Status::converged) {
-            recorded.warnings.push_back({.code = WarningCode::reference_ended_early,
-                                         .about = name,
-                                         .message = text("load case ", name, ": the reference ended as ",
-                                                         to_string(status), " after ", motion.n_frames(), " of ",
-                                                         options.frames, " frames"),
-                                         .advice = "a smaller deformation may help",
-                                         .values = {{"frames", static_cast<double>(motion.n_frames())},
-                                                    {"frames_wanted", static_cast<double>(options.frames)}}});
+            recorded.warnings.push_back(
+                {.code = WarningCode::reference_ended_early,
+                 .about = name,
+                 .message = text("load case ", name, ": the reference ended as ", to_string(status), " after ",
+                                 motion.n_frames(), " of ", options.frames, " frames"),
+                 .advice = "a smaller deformation may help",
+                 .values = {{"frames", static_cast<double>(motion.n_frames())},
+                            {"frames_wanted", static_cast<double>(options.frames)}}});
         }
         if (motion.n_frames() >= 3) {
             recorded.add(std::move(cases[c]), std::move(motion));
