@@ -58,7 +58,7 @@ struct CalibrateOptions {
     double matching_seconds = 300;    ///< of matching of motion at most, > 0, of wall clock
 
     int scored_training_cases = 12;   ///< at most, evenly spread, >= 0: what a fit has seen says little
-    bool score_past_failures = false; ///< go through the other held-out cases once a candidate fails in one
+    bool score_past_failures = false; ///< a candidate that fails in one case is tried on the others all the same
     double usable_error = 0.25;       ///< held-out error from which on the verdict is `poor`
 
     Execution execution{};
