@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <numeric>
-
-#include <springfit/fem/statics.hpp>
 #include <springfit/mesh/structured.hpp>
 #include <springfit/network/builders.hpp>
 
@@ -15,19 +12,19 @@ namespace {
 Row hexahedra_row(const std::array<int, 3>& cells, double poisson, const Settings& settings) {
     const auto mesh = hex_grid<double>(cells, {box_size[0], box_size[1], box_size[2]});
     const auto network = springs_along_edges(mesh, {.diagonals = true, .density = density});
-    const fem::Model model{mesh, fem::LinearElastic{young, poisson}, density};
-    Specimen<3, double> body{mesh.nodes, network.mass, boundary_nodes(mesh), {}};
+    const fem::LinearElastic material{young, poisson};
+    auto body = specimen_of(mesh, density);
     body.clamps = {{side_nodes<3, double>(mesh.nodes, {0, false}, 0.02), {}}};
-    CaseSettings cases;
-    cases.training = 60;
-    const auto sets = record_sets(model, edges(mesh), body, cases, settings);
+    const auto cases =
+        equilibria(fem_recorder(mesh, material, density), body, load_cases(60, settings), small_strain, settings);
     Row row;
     row.mesh = "box, hexahedra";
     row.material = std::string(fem::LinearElastic::name);
     row.poisson = poisson;
     row.network = "edges, diagonals";
-    row.setup = strain_text(cases.strain);
-    add_scores(row, mesh, {.young = young, .poisson = poisson}, network, sets, {}, settings);
+    row.setup = strain_text(small_strain);
+    add_scores(row, closed_form_networks(mesh, network, {.young = young, .poisson = poisson}), cases,
+               fit_options(false, settings));
     return row;
 }
 
@@ -35,24 +32,22 @@ Row hexahedra_row(const std::array<int, 3>& cells, double poisson, const Setting
 Row membrane_row(double poisson, const Settings& settings) {
     const auto mesh = membrane(rectangle_mesh(0.8, 0.4, 150));
     const auto network = springs_along_edges(mesh, {.density = density});
-    const fem::Model model{mesh, fem::StVenantKirchhoff{young, poisson}, density};
-    Specimen<3, double> body{mesh.nodes, network.mass, std::vector<int>(static_cast<std::size_t>(mesh.n_nodes())), {}};
-    std::iota(body.surface.begin(), body.surface.end(), 0);
+    const fem::StVenantKirchhoff material{young, poisson};
+    auto body = specimen_of(mesh, density);
     body.clamps = {
         {boundary_nodes(mesh), [](const Vector<3, double>& rest, double) -> Vector<3, double> { return 1.04 * rest; }}};
-    CaseSettings cases;
-    cases.training = 60;
-    cases.clamps = 1;
-    cases.clamp = 0;
-    cases.strain = 0.1;
-    const auto sets = record_sets(model, edges(mesh), body, cases, settings);
+    auto loads = load_cases(60, settings);
+    loads.clamps = 1;
+    loads.held_out_clamp = 0;
+    const auto cases = equilibria(fem_recorder(mesh, material, density), body, loads, 0.1, settings);
     Row row;
     row.mesh = "membrane";
     row.material = std::string(fem::StVenantKirchhoff::name);
     row.poisson = poisson;
     row.network = name_of(edges_alone);
     row.setup = "rim stretched by 4 %, loads in the plane";
-    add_scores(row, mesh, {.young = young, .poisson = poisson}, network, sets, {}, settings);
+    add_scores(row, closed_form_networks(mesh, network, {.young = young, .poisson = poisson}), cases,
+               fit_options(false, settings));
     return row;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <springfit/motion/replay.hpp>
+#include <springfit/cases/coarse_cases.hpp>
 
 #include "solid.hpp"
 
@@ -7,22 +7,15 @@ namespace study {
 
 namespace {
 
-/// A fine body seen from a coarse mesh.
-struct Transfer {
-    Interpolation<double> at_coarse; ///< fine nodes to coarse nodes
-    Interpolation<double> at_fine;   ///< coarse nodes to fine nodes
-    TetMesh coarse;
-
-    [[nodiscard]] Cases<3> operator()(const Cases<3>& fine) const {
-        Cases<3> result;
-        result.left_out = fine.left_out;
-        for (const auto& motion : fine.motions) {
-            auto moved = transfer<3, double>(motion, at_coarse, at_fine, coarse.nodes);
-            result.add(replay(moved), moved);
-        }
-        return result;
-    }
-};
+/// What a fine body did, as a network on a coarse mesh has it.
+RecordedCases<3, double> carried(const RecordedCases<3, double>& fine, const FineNodes<3>& nodes,
+                                 const TetMesh& coarse) {
+    RecordedCases<3, double> result;
+    result.training = at_network(fine.training, nodes, coarse.nodes);
+    result.held_out = at_network(fine.held_out, nodes, coarse.nodes);
+    result.warnings = fine.warnings;
+    return result;
+}
 
 } // namespace
 
@@ -40,19 +33,18 @@ void study_coarse(Report& report, const Settings& settings) {
         report.note("Left out: built without CGAL.");
         return;
     }
-    const Transfer carried{*at_coarse, *at_fine, coarse};
+    const FineNodes<3> nodes{fine.nodes, *at_coarse, *at_fine};
     const auto ratios = settings.quick ? std::vector{0.25} : std::vector{0.25, 0.45};
     for (double poisson : ratios) {
         const ReferenceKind reference{.poisson = poisson, .mean_dilatation = poisson >= 0.45};
-        CaseSettings cases;
-        cases.training = settings.quick ? 60 : 120;
-        const auto sets = record_solid(fine, reference, body_of(fine), cases, settings);
-        const CaseSets<3> moved{carried(sets.training), carried(sets.loads), carried(sets.kinds), carried(sets.clamp)};
+        const auto loads = load_cases(settings.quick ? 60 : 120, settings);
+        const auto cases = carried(
+            equilibria(recorder_of(fine, reference), body_of(fine), loads, small_strain, settings), nodes, coarse);
         const std::string setup = text("reference of ", fine.n_nodes(), " nodes");
-        const auto forms = edge_form_scores(coarse, reference, moved, settings);
+        const auto forms = edge_form_scores(coarse, reference, cases, settings);
         for (const NetworkKind& kind : {edges_alone, with_volume, with_both}) {
-            const Row row = solid_row("box, tetrahedra", coarse, reference, setup, kind, moved, forms,
-                                      {.acceleration = !kind.volume && poisson == 0.25}, settings);
+            const Row row = solid_row("box, tetrahedra", coarse, reference, setup, kind, cases, forms,
+                                      fit_options(!kind.volume && poisson == 0.25, settings));
             report.add(row);
             const std::string what = text("Network of 1/8 of the nodes, ", row.network, ", nu ", poisson);
             report.at_least(what + ": ratio to the best closed form, loads", row.ratio().loads, 3);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <numbers>
+#include <numeric>
 
 #include <springfit/simulate/simulate.hpp>
 
@@ -15,55 +16,40 @@ constexpr int frames_per_period = 40;
 constexpr int periods = 5;
 constexpr std::size_t n_training_swings = 8; ///< of a period and a half
 
-/// Scenarios that let go of the body at the equilibria of some cases.
-std::vector<Scenario<3, double>> releases(const Cases<3>& cases) {
-    std::vector<Scenario<3, double>> scenarios;
-    for (std::size_t c = 0; c < cases.motions.size(); ++c) {
+/// Load cases that let go of the body at the equilibria of others.
+std::vector<LoadCase<3, double>> releases(const CaseSet<3, double>& equilibria) {
+    auto cases = equilibria.cases;
+    for (std::size_t c = 0; c < cases.size(); ++c) {
         Scenario<3, double> scenario;
-        scenario.name = "let go of " + cases.scenarios[c].name;
-        scenario.clamps = cases.scenarios[c].clamps;
-        scenario.initial_positions = cases.motions[c].positions[0];
-        scenarios.push_back(std::move(scenario));
+        scenario.name = "let go of " + cases[c].scenario.name;
+        scenario.clamps = cases[c].scenario.clamps;
+        scenario.initial_positions = equilibria.motions[c].positions[0];
+        cases[c].scenario = std::move(scenario);
     }
-    return scenarios;
+    return cases;
 }
 
-struct Network {
-    std::string method;
-    bool is_closed_form;
-    double seconds;
-    SpringNetwork<3, double> network;
-};
-
-/// Every network to compare, with damping that follows stiffness.
-std::vector<Network> networks_of(const TetMesh& mesh, const ReferenceKind& reference, const NetworkKind& kind,
-                                 const Cases<3>& training, const Settings& settings) {
-    std::vector<Network> all;
-    const auto alone = prior_network(mesh, reference, edges_alone);
-    for (const auto& [name, form] : closed_forms(mesh, alone.springs, reference.solid())) {
-        all.push_back({name, true, 0, alone});
-        apply(form, all.back().network);
-    }
-    const auto prior = prior_network(mesh, reference, kind);
-    if (!kind.second_ring) {
-        for (const auto& fit : acceleration_fits(prior, training.motions, settings)) {
-            all.push_back({fit.method, false, fit.seconds, fit.network});
+/// Every network to compare, with damping that follows stiffness: the closed forms on edges, and the fits of a network.
+std::vector<Candidate<3>> networks_of(const TetMesh& mesh, const ReferenceKind& reference, const NetworkKind& kind,
+                                      const RecordedCases<3, double>& cases, const Settings& settings) {
+    auto how = fit_options(!kind.second_ring, settings);
+    how.learn_from_all = true;
+    how.steps_per_frame = 2;
+    auto forms_alone = how;
+    forms_alone.method = Method::closed_form;
+    auto all = candidates_of(edge_forms(mesh, reference), cases, forms_alone);
+    for (auto& candidate : candidates_of(start_of(mesh, reference, kind), cases, how)) {
+        if (candidate.acceleration || candidate.trajectory) {
+            all.push_back(std::move(candidate));
         }
     }
-    FitSettings how;
-    how.damping_per_stiffness = reference.stiffness_damping;
-    how.steps_per_frame = 2;
-    const auto fit = match_motion(prior, training.motions, how, settings);
-    all.push_back({"trajectory", false, fit.seconds, fit.network});
-    for (Network& own : all) {
-        own.network.damping = reference.stiffness_damping * own.network.stiffness;
-    }
+    judge(all, cases, how);
     return all;
 }
 
 /// The way of the node that moves most after a release, in the reference and in some networks.
 svg::Chart chart_of(const Scenario<3, double>& release, const Motion<3, double>& reference,
-                    const std::vector<Network>& networks) {
+                    const std::vector<Candidate<3>>& networks) {
     const Points<3, double> start = reference.positions[0] - reference.rest_positions;
     Index node = 0;
     Index axis = 0;
@@ -78,10 +64,9 @@ svg::Chart chart_of(const Scenario<3, double>& release, const Motion<3, double>&
         chart.series.push_back(std::move(series));
     };
     add("reference", reference);
-    for (const Network& own : networks) {
-        if (own.method == "trajectory" || own.method == "van_gelder") {
-            const SymplecticEulerOptions<double> options{.max_substeps = 100000};
-            add(own.method, simulate(own.network, release, reference.times, until_interrupted(), options).motion);
+    for (const auto& own : networks) {
+        if (own.name == "trajectory" || own.name == "van_gelder") {
+            add(own.name, simulate(own.network, release, reference.times, until_interrupted()).motion);
         }
     }
     return chart;
@@ -89,40 +74,33 @@ svg::Chart chart_of(const Scenario<3, double>& release, const Motion<3, double>&
 
 /// What is let go of, and what networks are fitted to.
 struct Swings {
-    CaseSets<3> sets; ///< static cases and some motions in time to train on, motions in time to judge by
+    RecordedCases<3, double> cases; ///< equilibria and some motions in time to train on, motions in time to judge by
     ReferenceKind reference;
     std::vector<int> clamped;
     double omega = 0; ///< lowest natural frequency of the reference, rad/s
 };
 
-Swings record_releases(const TetMesh& mesh, ReferenceKind reference, double strain, const Settings& settings) {
+Swings record_releases(const TetMesh& mesh, const ReferenceKind& kind, double strain, const Settings& settings) {
     const auto body = body_of(mesh);
+    const auto reference = recorder_of(mesh, kind);
     Swings swings;
+    swings.reference = kind;
     swings.clamped = body.clamps[0].nodes;
-    swings.omega = reference_frequency(mesh, reference, swings.clamped);
-    reference.stiffness_damping = 2 * damping_ratio / swings.omega;
-    swings.reference = reference;
-    CaseSettings cases;
-    cases.training = settings.quick ? 36 : reference.material == MaterialKind::linear ? 120 : 60;
-    cases.loads = 3;
-    cases.kinds = 5;
-    cases.clamp = 3;
-    cases.strain = strain;
-    const auto statics = record_solid(mesh, reference, body, cases, settings);
-    const double frame_time = 2 * std::numbers::pi / swings.omega / frames_per_period;
-    const auto swing = [&](const Cases<3>& start) {
-        return record_swings(mesh, reference, releases(start), frame_time, periods * frames_per_period + 1, settings);
+    swings.omega = reference_frequency(mesh, kind, swings.clamped);
+    auto loads = load_cases(settings.quick ? 36 : kind.material == MaterialKind::linear ? 120 : 60, settings);
+    loads.held_out_loads = 3;
+    loads.held_out_kinds = 5;
+    loads.held_out_clamp = 3;
+    const auto statics = equilibria(reference, body, loads, strain, settings);
+    const auto swing = [&](const CaseSet<3, double>& start, int frames) {
+        return record_swings(reference, releases(start), 2 * damping_ratio / swings.omega,
+                             2 * std::numbers::pi / swings.omega / frames_per_period, frames, settings);
     };
-    swings.sets = {statics.training, swing(statics.loads), swing(statics.kinds), swing(statics.clamp)};
-    Cases<3> first;
-    for (std::size_t c = 0; c < std::min<std::size_t>(n_training_swings, statics.training.motions.size()); ++c) {
-        first.add(statics.training.scenarios[c], statics.training.motions[c]);
-    }
-    const auto in_time =
-        record_swings(mesh, reference, releases(first), frame_time, 3 * frames_per_period / 2 + 1, settings);
-    for (std::size_t c = 0; c < in_time.motions.size(); ++c) {
-        swings.sets.training.add(in_time.scenarios[c], in_time.motions[c]);
-    }
+    std::vector<std::size_t> first(std::min(n_training_swings, statics.training.size()));
+    std::iota(first.begin(), first.end(), std::size_t(0));
+    swings.cases = swing(statics.held_out, periods * frames_per_period + 1);
+    swings.cases.training = statics.training;
+    swings.cases.add(swing(statics.training.subset(first), 3 * frames_per_period / 2 + 1));
     return swings;
 }
 
@@ -143,21 +121,24 @@ Row add_row(Report& report, const TetMesh& mesh, const Swings& swings, const Net
     row.nodes = static_cast<long>(mesh.n_nodes());
     row.network = name_of(kind);
     row.setup = text(periods, " periods, ", strain_text(strain));
-    const auto networks = networks_of(mesh, swings.reference, kind, swings.sets.training, settings);
-    for (const auto& [method, is_closed_form, seconds, network] : networks) {
-        row.springs = static_cast<long>(network.n_springs());
-        row.scores.push_back({method, is_closed_form, errors(network, swings.sets, settings), seconds});
-        const double omega = network_frequency(network, swings.clamped);
+    const auto networks = networks_of(mesh, swings.reference, kind, swings.cases, settings);
+    row.springs = static_cast<long>(networks.back().network.n_springs());
+    add_scores(row, networks, swings.cases);
+    for (std::size_t n = 0; n < networks.size(); ++n) {
+        const double omega = network_frequency(networks[n].network, swings.clamped);
         frequencies.fitted = omega / swings.omega;
-        frequencies.table.lines.push_back({text(row.nodes), row.material, row.network, method,
+        frequencies.table.lines.push_back({text(row.nodes), row.material, row.network, row.scores[n].method,
                                            number(omega / (2 * std::numbers::pi)), number(frequencies.fitted)});
     }
     report.add(row);
     report.table(frequencies.table);
-    if (!kind.second_ring && !swings.sets.kinds.motions.empty()) {
-        const auto& kinds = swings.sets.kinds;
+    const auto& held_out = swings.cases.held_out;
+    const auto shown = std::find_if(held_out.cases.begin(), held_out.cases.end(),
+                                    [](const auto& own) { return own.role == CaseRole::unseen_kind; });
+    if (!kind.second_ring && shown != held_out.cases.end()) {
+        const auto& motion = held_out.motions[static_cast<std::size_t>(shown - held_out.cases.begin())];
         report.figure(swings.reference.material == MaterialKind::linear ? "dynamics" : "dynamics-large",
-                      svg::lines(chart_of(kinds.scenarios.front(), kinds.motions.front(), networks)));
+                      svg::lines(chart_of(shown->scenario, motion, networks)));
     }
     return row;
 }

@@ -14,60 +14,61 @@ namespace study {
 
 namespace {
 
-[[maybe_unused]] TimedFit timed(const TrajectoryProblem<3>& problem, const SpringNetwork<3, double>& prior,
-                                const TrajectoryReport& report) {
+[[maybe_unused]] Candidate<3> candidate_of(const std::string& name, const TrajectoryProblem<3>& problem,
+                                           const SpringNetwork<3, double>& prior, const TrajectoryReport& report) {
     stop_if_interrupted();
-    TimedFit fit{report.seconds, report.objective, prior};
+    Candidate<3> candidate{.name = name, .network = prior};
+    candidate.trajectory = report;
+    candidate.seconds = report.seconds;
     if (usable(report.status)) {
-        apply(problem, report, fit.network);
+        apply(problem, report, candidate.network);
     }
-    return fit;
+    return candidate;
 }
 
 } // namespace
 
-std::optional<AccelerationReport> exact_fit([[maybe_unused]] const AccelerationProblem& problem) {
+ExactSolver exact_solver() {
 #ifdef SPRINGFIT_STUDY_IPOPT
-    return ipopt::exact(problem);
+    return [](const AccelerationProblem& problem, const ExactOptions& options) {
+        return ipopt::exact(problem, {.progress = options.progress});
+    };
 #else
     return {};
 #endif
 }
 
-std::optional<TimedFit> ipopt_fit([[maybe_unused]] const SpringNetwork<3, double>& prior,
-                                  [[maybe_unused]] const std::vector<Motion<3, double>>& training,
-                                  [[maybe_unused]] int max_iterations, [[maybe_unused]] const FitSettings& fit,
-                                  [[maybe_unused]] const Settings& settings) {
+std::optional<Candidate<3>> ipopt_fit([[maybe_unused]] const TrajectoryProblem<3>& problem,
+                                      [[maybe_unused]] const SpringNetwork<3, double>& prior,
+                                      [[maybe_unused]] int max_iterations) {
 #ifdef SPRINGFIT_STUDY_IPOPT
-    const TrajectoryProblem<3> problem(prior, training, trajectory_options(fit, settings));
     ipopt::TrajectoryFitOptions options;
     options.max_iterations = max_iterations;
     options.progress = until_interrupted();
-    return timed(problem, prior, ipopt::trajectory(problem, options));
+    return candidate_of("ipopt", problem, prior, ipopt::trajectory(problem, options));
 #else
     return {};
 #endif
 }
 
-std::optional<TimedFit> search_fit([[maybe_unused]] Search search,
-                                   [[maybe_unused]] const SpringNetwork<3, double>& prior,
-                                   [[maybe_unused]] const std::vector<Motion<3, double>>& training,
-                                   [[maybe_unused]] double seconds, [[maybe_unused]] const FitSettings& fit,
-                                   [[maybe_unused]] const Settings& settings) {
+std::optional<Candidate<3>> search_fit([[maybe_unused]] Search search,
+                                       [[maybe_unused]] const TrajectoryProblem<3>& problem,
+                                       [[maybe_unused]] const SpringNetwork<3, double>& prior,
+                                       [[maybe_unused]] double seconds, [[maybe_unused]] unsigned seed) {
 #ifdef SPRINGFIT_STUDY_SEARCH
-    const TrajectoryProblem<3> problem(prior, training, trajectory_options(fit, settings));
-    const auto run = [&](auto options, const auto& engine) {
+    const auto run = [&](const char* name, auto options, const auto& engine) {
         options.seconds = seconds;
-        options.seed = settings.seed;
+        options.seed = seed;
         options.progress = until_interrupted();
-        return timed(problem, prior, engine(options).fit);
+        return candidate_of(name, problem, prior, engine(options).fit);
     };
     if (search == Search::genetic) {
         search::GeneticOptions options;
         options.generations = 1000000; // as many as the time allows
-        return run(options, [&](const auto& own) { return search::genetic(problem, own); });
+        return run("genetic", options, [&](const auto& own) { return search::genetic(problem, own); });
     }
-    return run(search::AnnealingOptions{}, [&](const auto& own) { return search::annealing(problem, own); });
+    return run("annealing", search::AnnealingOptions{},
+               [&](const auto& own) { return search::annealing(problem, own); });
 #else
     return {};
 #endif

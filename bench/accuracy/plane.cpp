@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <functional>
 
-#include <springfit/fem/statics.hpp>
+#include <springfit/cases/fem_recorder.hpp>
 #include <springfit/mesh/structured.hpp>
 #include <springfit/network/builders.hpp>
 
@@ -22,23 +22,22 @@ template <CellType Cell, fem::Material Mat>
 Row plane_row(const std::string& name, const Mesh<2, double, Cell>& mesh, const Mat& material, bool acceleration,
               const Settings& settings) {
     const auto network = springs_along_edges(mesh, {.diagonals = !SimplexCell<Cell>, .density = density});
-    Specimen<2, double> body{mesh.nodes, network.mass, boundary_nodes(mesh), {}};
+    auto body = specimen_of(mesh, density);
+    body.surface = boundary_nodes(mesh);
     body.clamps = {{side_nodes<2, double>(mesh.nodes, {0, false}, 0.02), {}}};
     constexpr bool is_linear = std::same_as<Mat, fem::LinearElastic>;
-    CaseSettings cases;
-    cases.strain = is_linear ? small_strain : large_strain;
-    cases.training = settings.quick || !is_linear ? 60 : 200;
-    const fem::Model model{mesh, material, density};
-    const auto sets = record_sets(model, edges(mesh), body, cases, settings);
+    const double strain = is_linear ? small_strain : large_strain;
+    const auto cases = equilibria(fem_recorder(mesh, material, density), body,
+                                  load_cases(settings.quick || !is_linear ? 60 : 200, settings), strain, settings);
     Row row;
     row.mesh = name;
     row.material = std::string(Mat::name);
     row.poisson = material.poisson;
     row.network = SimplexCell<Cell> ? "edges" : "edges, diagonals";
-    row.setup = strain_text(cases.strain);
-    Methods methods{.acceleration = acceleration && is_linear};
-    methods.fit.prior_weight = is_linear ? methods.fit.prior_weight : large_strain_prior_weight;
-    add_scores(row, mesh, {.young = young, .poisson = material.poisson}, network, sets, methods, settings);
+    row.setup = strain_text(strain);
+    auto how = fit_options(acceleration && is_linear, settings);
+    how.prior_weight = is_linear ? how.prior_weight : large_strain_prior_weight;
+    add_scores(row, closed_form_networks(mesh, network, {.young = young, .poisson = material.poisson}), cases, how);
     return row;
 }
 

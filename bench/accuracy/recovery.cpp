@@ -2,7 +2,9 @@
 #include <numbers>
 #include <random>
 
-#include <springfit/motion/record.hpp>
+#include <springfit/fit/acceleration/dominant_term.hpp>
+#include <springfit/fit/acceleration/objective.hpp>
+#include <springfit/fit/trajectory/gauss_newton.hpp>
 #include <springfit/motion/replay.hpp>
 #include <springfit/network/builders.hpp>
 #include <springfit/score/frequency.hpp>
@@ -30,7 +32,8 @@ template <int Dim, CellType Cell>
 Hidden<Dim> hidden_network(const Mesh<Dim, double, Cell>& mesh, unsigned seed) {
     auto network = springs_along_edges(mesh, {.density = 1000.});
     apply(van_gelder(mesh, network.springs, {.young = 5e4, .poisson = Dim == 2 ? 1. / 3 : 0.25}), network);
-    Hidden<Dim> hidden{network, network, {mesh.nodes, network.mass, boundary_nodes(mesh), {}}};
+    Hidden<Dim> hidden{network, network, specimen_of(mesh, 1000)};
+    hidden.body.surface = boundary_nodes(mesh);
     hidden.body.clamps = {{side_nodes<Dim, double>(mesh.nodes, {0, false}, 0.02), {}}};
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> exponent(-0.5, 0.5); // over a decade
@@ -41,40 +44,89 @@ Hidden<Dim> hidden_network(const Mesh<Dim, double, Cell>& mesh, unsigned seed) {
     return hidden;
 }
 
+/// Equilibria of the hidden network under random loads, all to learn from.
 template <int Dim>
-std::vector<Scenario<Dim, double>> load_cases(const Hidden<Dim>& hidden, int n, unsigned seed) {
-    return scenarios_with(
-        random_load_cases(
-            hidden.body,
-            {.training = n, .clamps = 3, .held_out_loads = 0, .held_out_kinds = 0, .held_out_clamp = 0, .seed = seed}),
-        CaseRole::training);
+CaseSet<Dim, double> rests(const Hidden<Dim>& hidden, int n, double strain, unsigned seed, const Settings& settings) {
+    const ReferenceRecorder reference(hidden.network);
+    const LoadCaseOptions loads{
+        .training = n, .clamps = 3, .held_out_loads = 0, .held_out_kinds = 0, .held_out_clamp = 0, .seed = seed};
+    return equilibria<Dim>(reference, hidden.body, loads, strain, settings).training;
 }
 
 template <int Dim>
 std::vector<Motion<Dim, double>> swings(const Hidden<Dim>& hidden, const Settings& settings) {
-    const auto cases = record_equilibria(hidden.network, hidden.network.springs,
-                                         load_cases(hidden, 9, settings.seed + 1), 0.05, settings.execution);
-    std::vector<Motion<Dim, double>> motions;
-    for (auto scenario : cases.scenarios) {
-        set_amplitude(scenario, ramp_and_release(0.3 * hidden.period, 0.6 * hidden.period));
-        motions.push_back(record(hidden.network, scenario, {.dt = hidden.period / 25, .frames = 30}).motion);
-        stop_if_interrupted();
+    auto cases = rests(hidden, 9, 0.05, settings.seed + 1, settings).cases;
+    for (auto& load_case : cases) {
+        set_amplitude(load_case.scenario, ramp_and_release(0.3 * hidden.period, 0.6 * hidden.period));
     }
-    return motions;
+    const ReferenceRecorder reference(hidden.network);
+    auto recorded = record_motions<Dim, double>(
+        reference, cases, 0, {.dt = hidden.period / 25, .frames = 30, .progress = until_interrupted()},
+        settings.execution);
+    stop_if_interrupted();
+    return std::move(recorded.training.motions);
 }
 
 /// Static cases, in balance to rounding.
 template <int Dim>
 std::vector<Motion<Dim, double>> exact_equilibria(const Hidden<Dim>& hidden, const Settings& settings) {
-    auto cases = record_equilibria(hidden.network, hidden.network.springs, load_cases(hidden, 90, settings.seed), 0.02,
-                                   settings.execution);
-    for (std::size_t c = 0; c < cases.motions.size(); ++c) {
+    auto cases = rests(hidden, 90, 0.02, settings.seed, settings);
+    for (std::size_t c = 0; c < cases.size(); ++c) {
         EquilibriumOptions<Dim, double> options;
         options.start = cases.motions[c].positions[0];
         options.tolerance = 1e-14;
-        cases.motions[c].positions[0] = equilibrium(hidden.network, cases.scenarios[c], options).positions;
+        cases.motions[c].positions[0] = equilibrium(hidden.network, cases.cases[c].scenario, options).positions;
     }
     return std::move(cases.motions);
+}
+
+/// What a fit found, of whose solver more is asked here than in a calibration.
+template <int Dim>
+struct Found {
+    std::string method;
+    SpringNetwork<Dim, double> network;
+    double seconds = 0;
+};
+
+template <int Dim>
+std::vector<Found<Dim>> acceleration_fits(const SpringNetwork<Dim, double>& prior,
+                                          const std::vector<Motion<Dim, double>>& motions, const Settings& settings) {
+    const Stopwatch watch;
+    const AccelerationProblem problem = acceleration_problem<Dim, double>(prior, motions, {}, settings.execution);
+    const double assembly = watch.seconds();
+    std::vector<Found<Dim>> fits;
+    const auto add = [&](const char* method, const AccelerationReport& report) {
+        stop_if_interrupted();
+        fits.push_back({method, prior, assembly + report.seconds});
+        apply(problem, report, fits.back().network);
+    };
+    add("one pass", one_pass(problem, {.execution = settings.execution}));
+    add("dominant term", dominant_term(problem, {.max_sweeps = 5000,
+                                                 .tolerance = 1e-12,
+                                                 .execution = settings.execution,
+                                                 .progress = until_interrupted()}));
+    const ExactSolver by_ipopt = exact_solver();
+    const ExactOptions how{.execution = settings.execution, .progress = until_interrupted()};
+    add("exact", by_ipopt ? by_ipopt(problem, how) : exact(problem, how));
+    return fits;
+}
+
+/// Matching of motion without any weight on the prior.
+template <int Dim>
+Found<Dim> matched(const SpringNetwork<Dim, double>& prior, const std::vector<Motion<Dim, double>>& motions,
+                   TrajectoryOptions options, GaussNewtonOptions engine, const Settings& settings) {
+    const Stopwatch watch;
+    options.prior_weight = 0;
+    options.execution = settings.execution;
+    engine.progress = until_interrupted();
+    const TrajectoryProblem<Dim> problem(prior, motions, options);
+    const TrajectoryReport report = gauss_newton(problem, engine);
+    stop_if_interrupted();
+    Found<Dim> found{"trajectory", prior, watch.seconds()};
+    if (usable(report.status)) {
+        apply(problem, report, found.network);
+    }
+    return found;
 }
 
 /// The largest relative distance of a stiffness from another.
@@ -93,16 +145,11 @@ void recover(Report& report, Table& table, const Hidden<Dim>& hidden, const Sett
         report.must_be_at_most(text("Recovery, ", Dim, "D, ", method, ": largest relative error of a stiffness"), found,
                                allowed);
     };
-    constexpr int max_sweeps = 5000;
-    for (const auto& fit : acceleration_fits(hidden.prior, swings(hidden, settings), settings, max_sweeps)) {
+    for (const auto& fit : acceleration_fits(hidden.prior, swings(hidden, settings), settings)) {
         add(fit.method, "9 motions of 30 frames", distance(fit.network, hidden.network), fit.seconds);
     }
     const auto statics = exact_equilibria(hidden, settings);
-    FitSettings exact;
-    exact.prior_weight = 0;
-    exact.tolerance = 1e-14;
-    exact.max_iterations = 60;
-    const auto fit = match_motion(hidden.prior, statics, exact, settings);
+    const auto fit = matched(hidden.prior, statics, {}, {.max_iterations = 60, .tolerance = 1e-14}, settings);
     add("trajectory", text(statics.size(), " static cases"), distance(fit.network, hidden.network), fit.seconds);
 }
 
@@ -167,14 +214,9 @@ void check_horizon(Report& report, const Hidden<2>& hidden, const Settings& sett
     double between = std::numeric_limits<double>::quiet_NaN();
     for (double part : {1. / 400, 1. / 1600, 1. / 6400}) {
         const auto windows = short_windows(hidden, 100, part * hidden.period, settings.seed);
-        const auto fits = acceleration_fits(hidden.prior, starts_of(windows), settings, 5000);
-        FitSettings one_step;
-        one_step.prior_weight = 0;
-        one_step.horizon = 1;
-        one_step.window_stride = 2;
-        one_step.max_iterations = 100;
-        one_step.tolerance = 1e-12;
-        const auto fit = match_motion(hidden.prior, std::vector{windows}, one_step, settings);
+        const auto fits = acceleration_fits(hidden.prior, starts_of(windows), settings);
+        const auto fit = matched(hidden.prior, std::vector{windows}, {.horizon = 1, .window_stride = 2},
+                                 {.max_iterations = 100, .tolerance = 1e-12}, settings);
         between = distance(fit.network, fits.back().network);
         table.lines.push_back({number(part), number(between), number(distance(fits.back().network, hidden.network))});
         report.table(table);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <numbers>
+#include <numeric>
 
 #include <springfit/cases/noise.hpp>
 
@@ -25,13 +26,11 @@ public:
     }
 
     /// One point; all points of a line have the same held-out cases. Not drawn for x = 0.
-    void add(double x, const std::string& setup, const CaseSets<3>& sets, const FitSettings& fit,
-             bool acceleration = false) {
+    void add(double x, const std::string& setup, const RecordedCases<3, double>& cases, const CalibrateOptions& how) {
         if (m_forms.empty()) {
-            m_forms = edge_form_scores(*m_mesh, m_reference, sets, *m_settings);
+            m_forms = edge_form_scores(*m_mesh, m_reference, cases, *m_settings);
         }
-        const Row row = solid_row("box, tetrahedra", *m_mesh, m_reference, setup, edges_alone, sets, m_forms,
-                                  {.acceleration = acceleration, .fit = fit}, *m_settings);
+        const Row row = solid_row("box, tetrahedra", *m_mesh, m_reference, setup, edges_alone, cases, m_forms, how);
         m_report->add(row);
         const Errors fitted = row.errors_of("trajectory");
         const std::array values = {fitted.loads, fitted.kinds, fitted.clamp, row.best_closed_form().loads};
@@ -52,39 +51,40 @@ private:
     std::vector<Score> m_forms;
 };
 
+RecordedCases<3, double> with_training(RecordedCases<3, double> cases, CaseSet<3, double> training) {
+    cases.training = std::move(training);
+    return cases;
+}
+
 /// The first cases of a set.
-Cases<3> first(const Cases<3>& cases, int n) {
-    const auto end = std::min(cases.motions.size(), static_cast<std::size_t>(n));
-    Cases<3> result;
-    for (std::size_t c = 0; c < end; ++c) {
-        result.add(cases.scenarios[c], cases.motions[c]);
-    }
-    return result;
+CaseSet<3, double> first(const CaseSet<3, double>& cases, int n) {
+    std::vector<std::size_t> numbers(std::min(cases.size(), static_cast<std::size_t>(n)));
+    std::iota(numbers.begin(), numbers.end(), std::size_t(0));
+    return cases.subset(numbers);
 }
 
-CaseSets<3> with_training(CaseSets<3> sets, Cases<3> training) {
-    sets.training = std::move(training);
-    return sets;
-}
-
-/// Of the cases under the first `n_clamps` clamps that come up, `n` in equal parts.
-Cases<3> under_clamps(const Cases<3>& cases, int n_clamps, int n) {
-    std::vector<std::vector<int>> clamps;
-    std::vector<int> taken;
-    Cases<3> result;
-    for (std::size_t c = 0; c < cases.motions.size(); ++c) {
-        const auto& clamped = cases.motions[c].clamped;
-        auto place = static_cast<std::size_t>(std::find(clamps.begin(), clamps.end(), clamped) - clamps.begin());
-        if (place == clamps.size() && place < static_cast<std::size_t>(n_clamps)) {
-            clamps.push_back(clamped);
-            taken.push_back(0);
-        }
-        if (place < clamps.size() && taken[place] < n / n_clamps) {
-            ++taken[place];
-            result.add(cases.scenarios[c], cases.motions[c]);
+/// Of the cases under the first clamp sets, `n` in equal parts.
+CaseSet<3, double> under_clamps(const CaseSet<3, double>& cases, int n_clamps, int n) {
+    std::vector<int> taken(static_cast<std::size_t>(n_clamps), 0);
+    std::vector<std::size_t> numbers;
+    for (std::size_t c = 0; c < cases.size(); ++c) {
+        const int clamp = cases.cases[c].clamp_set;
+        if (clamp < n_clamps && taken[static_cast<std::size_t>(clamp)]++ < n / n_clamps) {
+            numbers.push_back(c);
         }
     }
-    return result;
+    return cases.subset(numbers);
+}
+
+/// The held-out cases without the unseen loads under other clamps than the body's own.
+CaseSet<3, double> judged_under_own_clamp(const CaseSet<3, double>& held_out) {
+    std::vector<std::size_t> numbers;
+    for (std::size_t c = 0; c < held_out.size(); ++c) {
+        if (held_out.cases[c].role != CaseRole::unseen_load || held_out.cases[c].clamp_set == 0) {
+            numbers.push_back(c);
+        }
+    }
+    return held_out.subset(numbers);
 }
 
 /// What all lines share.
@@ -92,7 +92,7 @@ struct Bench {
     Report* report;
     TetMesh mesh;
     ReferenceKind reference;
-    CaseSets<3> sets; ///< with more training cases than any line but the first uses
+    RecordedCases<3, double> cases; ///< with more training cases than any line but the first uses
     const Settings* settings;
 
     [[nodiscard]] Line line(const std::string& title, const std::string& x_label) const {
@@ -104,7 +104,8 @@ void add_case_counts(const Bench& bench) {
     Line line = bench.line("Number of training cases", "training cases");
     const auto counts = bench.settings->quick ? std::vector{6, 24, 60} : std::vector{6, 15, 30, 60, 120, 240};
     for (int n : counts) {
-        line.add(n, text(n, " training cases"), with_training(bench.sets, first(bench.sets.training, n)), {}, n == 60);
+        line.add(n, text(n, " training cases"), with_training(bench.cases, first(bench.cases.training, n)),
+                 fit_options(n == 60, *bench.settings));
     }
     line.draw("setups-cases");
 }
@@ -113,26 +114,29 @@ void add_prior_weights(const Bench& bench) {
     const auto weights =
         bench.settings->quick ? std::vector{1e-5, 1e-3} : std::vector{1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1};
     for (int n : bench.settings->quick ? std::vector{24} : std::vector{15, 60}) {
-        const auto sets = with_training(bench.sets, first(bench.sets.training, n));
+        const auto cases = with_training(bench.cases, first(bench.cases.training, n));
         Line line = bench.line(text("Weight of the prior, ", n, " training cases"), "prior weight");
         for (double weight : weights) {
-            line.add(weight, text(n, " training cases, prior weight ", weight), sets, {.prior_weight = weight});
+            auto how = fit_options(false, *bench.settings);
+            how.prior_weight = weight;
+            line.add(weight, text(n, " training cases, prior weight ", weight), cases, how);
         }
         line.draw(text("setups-prior-", n));
     }
 }
 
 void add_noise(const Bench& bench) {
-    const auto clean = first(bench.sets.training, bench.settings->quick ? 24 : 60);
+    const auto clean = first(bench.cases.training, bench.settings->quick ? 24 : 60);
     for (double weight : bench.settings->quick ? std::vector{1e-3} : std::vector{1e-5, 1e-3}) {
         Line line = bench.line(text("Noise in the recorded positions, prior weight ", weight), "noise / displacement");
         for (double level : bench.settings->quick ? std::vector{1e-2} : std::vector{0., 1e-3, 1e-2, 5e-2}) {
-            Cases<3> noisy = clean;
-            for (std::size_t c = 0; c < noisy.motions.size(); ++c) {
+            auto noisy = clean;
+            for (std::size_t c = 0; c < noisy.size(); ++c) {
                 noisy.motions[c] = with_noise(noisy.motions[c], level, bench.settings->seed + static_cast<unsigned>(c));
             }
-            line.add(level, text("noise ", level, ", prior weight ", weight), with_training(bench.sets, noisy),
-                     {.prior_weight = weight}, level == 1e-2 && weight == 1e-3);
+            auto how = fit_options(level == 1e-2 && weight == 1e-3, *bench.settings);
+            how.prior_weight = weight;
+            line.add(level, text("noise ", level, ", prior weight ", weight), with_training(bench.cases, noisy), how);
         }
         line.draw(text("setups-noise-", weight));
     }
@@ -141,15 +145,15 @@ void add_noise(const Bench& bench) {
 /// Judged under the body's own clamp, which is always trained under, and under one that never is.
 void add_clamps(const Bench& bench) {
     constexpr int n = 48;
-    CaseSettings cases;
-    cases.clamps = 4;
-    cases.training = 4 * n;
-    auto sets = record_solid(bench.mesh, bench.reference, body_of(bench.mesh), cases, *bench.settings);
-    sets.loads = under_clamps(sets.loads, 1, 1000);
+    auto loads = load_cases(4 * n, *bench.settings);
+    loads.clamps = 4;
+    auto cases =
+        equilibria(recorder_of(bench.mesh, bench.reference), body_of(bench.mesh), loads, small_strain, *bench.settings);
+    cases.held_out = judged_under_own_clamp(cases.held_out);
     Line line = bench.line("Number of clamps trained under", "clamps");
     for (int clamps = 1; clamps <= 4; ++clamps) {
         line.add(clamps, text(n, " training cases under ", clamps, clamps == 1 ? " clamp" : " clamps"),
-                 with_training(sets, under_clamps(sets.training, clamps, n)), {});
+                 with_training(cases, under_clamps(cases.training, clamps, n)), fit_options(false, *bench.settings));
     }
     line.draw("setups-clamps");
 }
@@ -163,21 +167,23 @@ void add_horizons(const Bench& bench) {
     const auto body = body_of(small.mesh);
     const double omega = reference_frequency(small.mesh, small.reference, body.clamps[0].nodes);
     const double period = 2 * std::numbers::pi / omega;
-    small.reference.stiffness_damping = 0.06 / omega; // 3 % of critical damping at the lowest frequency
-    CaseSettings cases;
-    cases.training = 9;
-    auto sets = record_solid(small.mesh, small.reference, body, cases, settings);
-    auto pushes = sets.training.scenarios;
-    for (auto& scenario : pushes) {
-        set_amplitude(scenario, ramp_and_release(0.2 * period, 0.4 * period));
+    const double beta = 0.06 / omega; // 3 % of critical damping at the lowest frequency
+    const auto reference = recorder_of(small.mesh, small.reference);
+    const auto statics = equilibria(reference, body, load_cases(9, settings), small_strain, settings);
+    auto pushes = statics.training.cases;
+    for (auto& push : pushes) {
+        set_amplitude(push.scenario, ramp_and_release(0.2 * period, 0.4 * period));
     }
-    sets.training = record_swings(small.mesh, small.reference, pushes, period / 40, frames, settings);
+    auto cases = record_swings(reference, pushes, beta, period / 40, frames, settings);
+    cases.held_out = statics.held_out;
     Line line = small.line("Horizon of the windows of nine motions in time", "frames");
     for (int horizon : {1, 4, 16, 0}) {
+        auto how = fit_options(horizon == 1, settings);
+        how.prior_weight = 1e-4;
+        how.horizon = horizon;
         line.add(horizon > 0 ? horizon : frames - 1,
-                 horizon > 0 ? text("9 motions, horizon ", horizon) : std::string("9 motions, each to its end"), sets,
-                 {.prior_weight = 1e-4, .horizon = horizon, .damping_per_stiffness = small.reference.stiffness_damping},
-                 horizon == 1);
+                 horizon > 0 ? text("9 motions, horizon ", horizon) : std::string("9 motions, each to its end"), cases,
+                 how);
     }
     line.draw("setups-horizon");
 }
@@ -193,9 +199,8 @@ void study_setups(Report& report, const Settings& settings) {
         "windows of some frames (a period of the slowest vibration has 40), and is judged by equilibria like the "
         "others.");
     Bench bench{&report, box_mesh(box_size, settings.quick ? 150 : 400), {.poisson = 0.3}, {}, &settings};
-    CaseSettings cases;
-    cases.training = settings.quick ? 60 : 240;
-    bench.sets = record_solid(bench.mesh, bench.reference, body_of(bench.mesh), cases, settings);
+    bench.cases = equilibria(recorder_of(bench.mesh, bench.reference), body_of(bench.mesh),
+                             load_cases(settings.quick ? 60 : 240, settings), small_strain, settings);
     add_case_counts(bench);
     add_prior_weights(bench);
     add_noise(bench);

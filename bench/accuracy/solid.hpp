@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <springfit/cases/fem_recorder.hpp>
+
 #include "trial.hpp"
 
 /// What the parts in space share: tetrahedral bodies, their finite elements and the networks on their nodes.
@@ -20,7 +22,6 @@ struct ReferenceKind {
     double poisson = 0.25;
     /// The volume measure averaged around each node, so that the body does not lock; else of each tetrahedron as it is.
     bool mean_dilatation = false;
-    double stiffness_damping = 0; ///< s
 
     [[nodiscard]] IsotropicSolid solid() const { return {.young = young, .poisson = poisson}; }
 };
@@ -47,17 +48,12 @@ inline constexpr NetworkKind with_both{true, true};
 
 // What the reference does (references.cpp).
 
-[[nodiscard]] CaseSets<3> record_solid(const TetMesh& mesh, const ReferenceKind& reference,
-                                       const Specimen<3, double>& body, const CaseSettings& cases,
-                                       const Settings& settings);
-/// Scenarios scaled to a strain, with their equilibria.
-[[nodiscard]] Cases<3> record_solid(const TetMesh& mesh, const ReferenceKind& reference,
-                                    const std::vector<Scenario<3, double>>& scenarios, double strain,
-                                    const Settings& settings);
-/// Motions in time, as the scenarios are.
-[[nodiscard]] Cases<3> record_swings(const TetMesh& mesh, const ReferenceKind& reference,
-                                     const std::vector<Scenario<3, double>>& scenarios, double frame_time, int frames,
-                                     const Settings& settings);
+[[nodiscard]] FemRecorder<3, double> recorder_of(const TetMesh& mesh, const ReferenceKind& reference);
+/// Motions in time, as the scenarios of the cases are; `stiffness_damping` is beta of D = beta K, s.
+[[nodiscard]] RecordedCases<3, double> record_swings(const CaseRecorder<3, double>& reference,
+                                                     const std::vector<LoadCase<3, double>>& cases,
+                                                     double stiffness_damping, double frame_time, int frames,
+                                                     const Settings& settings);
 /// Lowest natural frequency, rad/s.
 [[nodiscard]] double reference_frequency(const TetMesh& mesh, const ReferenceKind& reference,
                                          const std::vector<int>& clamped);
@@ -65,25 +61,28 @@ inline constexpr NetworkKind with_both{true, true};
 
 // Networks and rows (solid.cpp).
 
-/// A network of tetrahedra with a closed form's values, the prior of a fit. Against a reference that does not lock,
-/// volume stiffness starts at no more than 6 shear moduli: every cell holds its volume on its own, and several cells
-/// share a node.
-[[nodiscard]] SpringNetwork<3, double> prior_network(const TetMesh& mesh, const ReferenceKind& reference,
-                                                     const NetworkKind& kind);
+/// The closed forms of the springs on the edges of a mesh, with which every network is compared.
+[[nodiscard]] std::vector<NamedNetwork<3>> edge_forms(const TetMesh& mesh, const ReferenceKind& reference);
 
-/// Scores of the closed forms on the edges of a mesh.
+/// A network of tetrahedra with a closed form's values; the last is the start and prior of a fit. Against a reference
+/// that does not lock, volume stiffness starts at no more than 6 shear moduli: every cell holds its volume on its own,
+/// and several cells share a node.
+[[nodiscard]] std::vector<NamedNetwork<3>> start_of(const TetMesh& mesh, const ReferenceKind& reference,
+                                                    const NetworkKind& kind);
+
+/// Scores of `edge_forms`.
 [[nodiscard]] std::vector<Score> edge_form_scores(const TetMesh& mesh, const ReferenceKind& reference,
-                                                  const CaseSets<3>& sets, const Settings& settings);
+                                                  const RecordedCases<3, double>& cases, const Settings& settings);
 
-/// One row of one network; `edge_forms` are the closed forms on edges, with which every network is compared.
+/// One row of one network; `forms` are the scores of `edge_forms`.
 [[nodiscard]] Row solid_row(const std::string& name, const TetMesh& mesh, const ReferenceKind& reference,
-                            const std::string& setup, const NetworkKind& kind, const CaseSets<3>& sets,
-                            const std::vector<Score>& edge_forms, const Methods& methods, const Settings& settings);
+                            const std::string& setup, const NetworkKind& kind, const RecordedCases<3, double>& cases,
+                            const std::vector<Score>& forms, const CalibrateOptions& how);
 
-/// One row per network, of a body clamped by `body`.
+/// One row per network, of a body clamped by `body`; acceleration is fitted where there are springs on edges alone.
 [[nodiscard]] std::vector<Row> solid_rows(const std::string& name, const TetMesh& mesh, const Specimen<3, double>& body,
-                                          const ReferenceKind& reference, const CaseSettings& cases,
-                                          const std::vector<NetworkKind>& networks, const Methods& methods,
+                                          const ReferenceKind& reference, const LoadCaseOptions& cases, double strain,
+                                          const std::vector<NetworkKind>& networks, const CalibrateOptions& how,
                                           const Settings& settings);
 
 /// Rows of hexahedra with all diagonals and of a membrane (braced.cpp).

@@ -52,10 +52,9 @@ void add_bars(Report& report, const Row& row) {
 }
 
 std::vector<Row> box_rows(const std::string& name, const TetMesh& mesh, const ReferenceKind& reference,
-                          const std::vector<NetworkKind>& networks, const Methods& methods, const Settings& settings) {
-    CaseSettings cases;
-    cases.training = settings.quick ? 60 : 120;
-    return solid_rows(name, mesh, body_of(mesh), reference, cases, networks, methods, settings);
+                          const std::vector<NetworkKind>& networks, bool acceleration, const Settings& settings) {
+    return solid_rows(name, mesh, body_of(mesh), reference, load_cases(settings.quick ? 60 : 120, settings),
+                      small_strain, networks, fit_options(acceleration, settings), settings);
 }
 
 /// The rows that bars are read from: all networks on the finest box.
@@ -71,7 +70,7 @@ void add_bar_rows(Report& report, Index n_nodes, const std::vector<double>& rati
     const TetMesh box = box_mesh(box_size, n_nodes);
     for (double poisson : ratios) {
         const auto rows = box_rows("box, tetrahedra", box, {.poisson = poisson}, all_networks,
-                                   {.acceleration = settings.quick && poisson == 0.25}, settings);
+                                   settings.quick && poisson == 0.25, settings);
         chart.groups.push_back(text(poisson));
         chart.series[0].y.push_back(rows.front().best_closed_form().loads);
         for (std::size_t r = 0; r < rows.size(); ++r) {
@@ -96,26 +95,23 @@ void add_other_rows(Report& report, const std::vector<double>& ratios, const Set
     const TetMesh cut = random_cut_box({9, 4, 4}, box_size, 3);
     for (double poisson : ratios) {
         const ReferenceKind linear{.poisson = poisson};
-        add_rows(report, box_rows("box, tetrahedra", coarse, linear, {edges_alone, with_both}, {.acceleration = true},
-                                  settings));
-        add_rows(report, box_rows("box, tetrahedra", middle, linear, {edges_alone, with_both},
-                                  {.acceleration = poisson == 0.25}, settings));
-        add_rows(report, box_rows("box, cut at random", cut, linear, {edges_alone, with_both}, {}, settings));
+        add_rows(report, box_rows("box, tetrahedra", coarse, linear, {edges_alone, with_both}, true, settings));
+        add_rows(report,
+                 box_rows("box, tetrahedra", middle, linear, {edges_alone, with_both}, poisson == 0.25, settings));
+        add_rows(report, box_rows("box, cut at random", cut, linear, {edges_alone, with_both}, false, settings));
     }
     for (double poisson : {0.45, 0.49}) {
         add_rows(report, box_rows("box, tetrahedra", middle, {.poisson = poisson, .mean_dilatation = true},
-                                  {edges_alone, with_volume, with_both}, {}, settings));
+                                  {edges_alone, with_volume, with_both}, false, settings));
     }
-    CaseSettings cases;
-    cases.training = 45;
-    Methods large;
-    large.fit.prior_weight = 1e-3; // with 1e-5, some held-out cases find no equilibrium
+    auto large = fit_options(false, settings);
+    large.prior_weight = 1e-3; // with 1e-5, some held-out cases find no equilibrium
     for (MaterialKind material : {MaterialKind::st_venant_kirchhoff, MaterialKind::neo_hookean}) {
         for (double poisson : {0.25, 0.45}) {
-            cases.strain = material == MaterialKind::neo_hookean ? 0.1 : 0.05;
+            const double strain = material == MaterialKind::neo_hookean ? 0.1 : 0.05;
             add_rows(report,
                      solid_rows("box, tetrahedra", coarse, body_of(coarse), {.material = material, .poisson = poisson},
-                                cases, {edges_alone, with_volume}, large, settings));
+                                load_cases(45, settings), strain, {edges_alone, with_volume}, large, settings));
         }
     }
 }

@@ -5,9 +5,7 @@
 #include <filesystem>
 #include <optional>
 
-#include <springfit/core/execution.hpp>
-#include <springfit/core/progress.hpp>
-#include <springfit/fit/acceleration/problem.hpp>
+#include <springfit/calibrate/options.hpp>
 #include <springfit/mesh/mesh.hpp>
 #include <springfit/motion/transfer.hpp>
 
@@ -64,7 +62,8 @@ interpolation_at(const springfit::Mesh<3, double, springfit::Tet4>& mesh, const 
 [[nodiscard]] springfit::Mesh<3, double, springfit::Tet4>
 random_cut_box(const std::array<int, 3>& cells, const std::array<double, 3>& size, unsigned seed);
 
-/// The exact minimiser of the acceleration fit by Ipopt, the reference; nothing where it is not built in.
-[[nodiscard]] std::optional<springfit::AccelerationReport> exact_fit(const springfit::AccelerationProblem& problem);
+/// The exact minimiser of the acceleration fit by Ipopt, the reference; empty where it is not built in, which takes the
+/// library's own.
+[[nodiscard]] springfit::ExactSolver exact_solver();
 
 } // namespace study

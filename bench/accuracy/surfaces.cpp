@@ -30,8 +30,8 @@ void study_surfaces(Report& report, const Settings& settings) {
         report.note("Left out: no folder given by --data.");
         return;
     }
-    Methods methods;
-    methods.fit.max_iterations = settings.quick ? 6 : 40;
+    auto how = fit_options(false, settings);
+    how.matching_iterations = settings.quick ? 6 : 40;
     const ReferenceKind locking{.material = MaterialKind::neo_hookean, .poisson = 0.45};
     ReferenceKind mean = locking;
     mean.mean_dilatation = true;
@@ -50,11 +50,9 @@ void study_surfaces(Report& report, const Settings& settings) {
         const auto body = body_of(*mesh, surface.axis, 0.05);
         const auto rows_of = [&](double strain, int training, const ReferenceKind& reference,
                                  const std::vector<NetworkKind>& networks) {
-            CaseSettings cases;
-            cases.training = training;
-            cases.clamp = 6;
-            cases.strain = strain;
-            for (const Row& row : solid_rows(name, *mesh, body, reference, cases, networks, methods, settings)) {
+            auto cases = load_cases(training, settings);
+            cases.held_out_clamp = 6;
+            for (const Row& row : solid_rows(name, *mesh, body, reference, cases, strain, networks, how, settings)) {
                 report.add(row);
                 if (is_main && reference.mean_dilatation && row.network == name_of(with_volume)) {
                     add_bars(report, row);

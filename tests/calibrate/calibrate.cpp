@@ -143,6 +143,123 @@ TEST_CASE("methods that are asked for are returned") {
     CHECK(asked == 1);
 }
 
+TEST_CASE("every fit starts from the network that is named") {
+    const auto truth = hidden<2>();
+    const auto cases = cases_of(truth);
+    auto far = even(truth);
+    far.stiffness *= 3;
+    const std::vector<NamedNetwork<2>> given{{"far", far}, {"near", even(truth)}};
+    CalibrateOptions options;
+    options.matching_iterations = 0;
+    const auto stiffness_of = [&](const std::string& name) {
+        for (const auto& candidate : make_candidates(given, cases, options).all) {
+            if (candidate.name == name) {
+                return candidate.network.stiffness;
+            }
+        }
+        return Values<double>();
+    };
+    CHECK(stiffness_of("trajectory") == even(truth).stiffness); // the nearest
+    options.start = 0;
+    CHECK(stiffness_of("trajectory") == far.stiffness);
+    // What no motion excites keeps its prior: springs between clamped nodes.
+    const auto clamped = specimen<2>().clamps.front().nodes;
+    for (const std::size_t start : {0, 1}) {
+        options.start = start;
+        const auto found = stiffness_of("exact");
+        for (Index e = 0; e < truth.n_springs(); ++e) {
+            if (std::binary_search(clamped.begin(), clamped.end(), truth.springs(0, e)) &&
+                std::binary_search(clamped.begin(), clamped.end(), truth.springs(1, e))) {
+                CHECK(found(e) == given[start].network.stiffness(e));
+            }
+        }
+    }
+    options.start = 2;
+    CHECK_THROWS_WITH_AS((void)make_candidates(given, cases, options), doctest::Contains("start"), InvalidArgument);
+}
+
+TEST_CASE("fits learn from the cases that there are, or from all") {
+    const auto truth = hidden<2>();
+    auto cases = cases_of(truth);
+    CalibrateOptions options;
+    options.one_pass = true;
+    options.matching_iterations = 3;
+    std::vector<std::size_t> statics;
+    std::vector<std::size_t> in_time;
+    for (std::size_t c = 0; c < cases.training.size(); ++c) {
+        (cases.training.is_static(c) ? statics : in_time).push_back(c);
+    }
+    const auto misfit = [&](const auto& made) { return made.all[1].trajectory->misfit_start; };
+    const auto apart = make_candidates(std::vector<NamedNetwork<2>>{{"given", even(truth)}}, cases, options);
+    REQUIRE(apart.all.size() == 5);
+    CHECK(apart.all[2].name == "one_pass");
+    options.learn_from_all = true;
+    options.horizon = 0;
+    options.steps_per_frame = 2;
+    const auto together = make_candidates(std::vector<NamedNetwork<2>>{{"given", even(truth)}}, cases, options);
+    CHECK(misfit(together) != misfit(apart));
+    CHECK(together.all.back().acceleration->objective_start != apart.all.back().acceleration->objective_start);
+    // Equilibria alone tell acceleration fits where forces balance.
+    options.learn_from_all = false;
+    cases.training = cases.training.subset(statics);
+    const auto balanced = calibrate(even(truth), cases, options);
+    CHECK(balanced.candidates.back().name == "exact");
+    CHECK(balanced.candidates.back().held_out.error < 0.1 * balanced.candidates.front().held_out.error);
+    // A loose tolerance ends matching sooner.
+    options.method = Method::trajectory;
+    options.matching_iterations = 40;
+    const auto iterations = [&](double tolerance) {
+        options.matching_tolerance = tolerance;
+        return calibrate(even(truth), cases, options).best().trajectory->iterations;
+    };
+    CHECK(iterations(0.5) < iterations(1e-9));
+}
+
+TEST_CASE("errors by role, and of all cases where one fails") {
+    const auto truth = hidden<2>();
+    const auto cases = cases_of(truth);
+    CalibrateOptions options;
+    options.scored_training_cases = 0;
+    std::vector<Candidate<2>> candidates{{.name = "even", .network = even(truth)}};
+    CHECK(score(candidates, cases, options));
+    const auto& even_one = candidates.front();
+    CHECK(even_one.training.cases.empty());
+    CHECK(std::isinf(even_one.training.error));
+    const auto error_of = [&](CaseRole role) {
+        std::vector<std::size_t> numbers;
+        for (std::size_t c = 0; c < cases.held_out.size(); ++c) {
+            if (cases.held_out.cases[c].role == role) {
+                numbers.push_back(c);
+            }
+        }
+        const auto part = cases.held_out.subset(numbers);
+        return motion_error(even_one.network, part.scenarios(), part.motions).error;
+    };
+    for (const CaseRole role : {CaseRole::unseen_load, CaseRole::unseen_kind}) {
+        const double expected = error_of(role);
+        CHECK(test::relative(error_with(role, even_one.held_out, cases.held_out), expected, expected) < 1e-12);
+    }
+    CHECK(std::isnan(error_with(CaseRole::unseen_clamp, even_one.held_out, cases.held_out)));
+
+    // A load that no network bears makes its role infinite, and no other.
+    auto torn = cases;
+    std::size_t broken = 0;
+    while (torn.held_out.cases[broken].role != CaseRole::unseen_kind) {
+        ++broken;
+    }
+    scale_loads(torn.held_out.cases[broken].scenario, 1e300);
+    for (const bool past : {false, true}) {
+        options.score_past_failures = past;
+        CHECK(score(candidates, torn, options));
+        CHECK(std::isinf(candidates.front().held_out.error));
+        CHECK(std::isinf(error_with(CaseRole::unseen_kind, candidates.front().held_out, torn.held_out)));
+        CHECK((candidates.front().held_out.statuses.back() == Status::converged) == past);
+    }
+    const double others = error_of(CaseRole::unseen_load);
+    CHECK(test::relative(error_with(CaseRole::unseen_load, candidates.front().held_out, torn.held_out), others,
+                         others) < 1e-12);
+}
+
 TEST_CASE("an interruption leaves what is done, and says so") {
     const auto truth = hidden<2>();
     const auto cases = cases_of(truth);
@@ -187,6 +304,13 @@ TEST_CASE("what cannot be used is refused") {
     options.zeta = -1;
     CHECK_THROWS_AS((void)calibrate(truth, cases, options), InvalidArgument);
     options = {};
-    options.scored_training_cases = 0;
+    options.scored_training_cases = -1;
+    CHECK_THROWS_AS((void)calibrate(truth, cases, options), InvalidArgument);
+    options = {};
+    options.steps_per_frame = 0;
+    options.learn_from_all = true;
+    CHECK_THROWS_AS((void)calibrate(truth, cases, options), InvalidArgument);
+    options = {};
+    options.matching_tolerance = 0;
     CHECK_THROWS_AS((void)calibrate(truth, cases, options), InvalidArgument);
 }

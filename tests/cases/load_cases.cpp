@@ -206,6 +206,28 @@ TEST_CASE_TEMPLATE("a split keeps loads, kinds and a clamp from training", T, te
     }
 }
 
+TEST_CASE("held-out cases with a seed of their own are the same however many are trained on") {
+    const auto body = clamped_box<2, double>();
+    LoadCaseOptions options{.training = 6, .seed = 3, .held_out_seed = 5};
+    const auto few = random_load_cases(body, options);
+    options.training = 18;
+    const auto many = random_load_cases(body, options);
+    options.held_out_seed = 6;
+    const auto others = random_load_cases(body, options);
+    for (const CaseRole role : {CaseRole::unseen_load, CaseRole::unseen_kind, CaseRole::unseen_clamp}) {
+        const auto forces = [&](const auto& cases, std::size_t c) {
+            return forces_of<2, double>(scenarios_with(cases, role)[c], body);
+        };
+        for (std::size_t c = 0; c < scenarios_with(few, role).size(); ++c) {
+            CHECK(forces(few, c) == forces(many, c));
+            CHECK(forces(few, c) != forces(others, c));
+        }
+    }
+    const auto forces = forces_of<2, double>(scenarios_with(few, CaseRole::training)[5], body);
+    CHECK(forces == forces_of<2, double>(scenarios_with(others, CaseRole::training)[5], body));
+    CHECK(forces == forces_of<2, double>(random_load_cases(body, {.training = 6, .seed = 3})[5].scenario, body));
+}
+
 TEST_CASE("a split may be plain, and its numbers are checked") {
     auto body = clamped_box<2, double>();
     body.clamps[0].position = [](const Vector<2, double>& rest, double) { return rest; };

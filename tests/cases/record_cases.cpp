@@ -97,6 +97,71 @@ TEST_CASE("recorders answer as their references do") {
     CHECK(recorded.external_forces.front() == expected.external_forces.front().leftCols(mesh.n_nodes()));
 }
 
+TEST_CASE_TEMPLATE("load cases of one's own are recorded by their roles", T, test::Space<2, double>,
+                   test::Space<3, double>) {
+    constexpr int dim = T::dimension;
+    const auto body = specimen<dim>();
+    const auto reference = fem_recorder(box<dim>(), linear, 1000.);
+    const auto loads = random_load_cases(
+        body, {.training = 4, .clamps = 2, .held_out_loads = 2, .held_out_kinds = 3, .held_out_clamp = 1});
+    const auto statics = record_equilibria(reference, body, loads, {.strain = 0.01});
+    CHECK(statics.training.size() == 4);
+    REQUIRE(statics.held_out.size() == 6);
+    CHECK(statics.held_out.cases.back().role == CaseRole::unseen_clamp);
+    for (std::size_t c = 0; c < 6; ++c) {
+        const auto& motion = statics.held_out.motions[c];
+        const auto found =
+            linear_edge_strain(body.edges, body.rest_positions, motion.positions.front() - body.rest_positions);
+        CHECK(test::relative(std::max(found.percentile_95, found.max / 4), 0.01, 0.01) < 1e-6);
+        CHECK(motion.name == "static " + statics.held_out.cases[c].scenario.name);
+    }
+
+    // In time, as the scenarios are: let go of at those equilibria.
+    auto releases = statics.held_out.cases;
+    for (std::size_t c = 0; c < releases.size(); ++c) {
+        releases[c].scenario.loads.clear();
+        releases[c].scenario.initial_positions = statics.held_out.motions[c].positions.front();
+    }
+    const auto swings = record_motions(reference, releases, 1e-4, {.dt = 1e-3, .frames = 5});
+    CHECK(swings.stiffness_damping == 1e-4);
+    CHECK(swings.training.empty());
+    REQUIRE(swings.held_out.size() == 6);
+    CHECK(swings.held_out.motions.front().n_frames() == 5);
+    CHECK(swings.held_out.motions.front().positions.front() == statics.held_out.motions.front().positions.front());
+    CHECK(swings.held_out.cases.back().role == CaseRole::unseen_clamp);
+
+    auto both = statics;
+    both.add(swings);
+    CHECK(both.held_out.size() == 12);
+
+    auto bare = body;
+    bare.edges.resize(2, 0);
+    CHECK_THROWS_WITH_AS((void)record_equilibria(reference, bare, loads), doctest::Contains("edges"), InvalidArgument);
+    CHECK_THROWS_AS((void)record_equilibria(reference, body, loads, {.strain = 0}), InvalidArgument);
+}
+
+TEST_CASE("what has no equilibrium is left out with a warning, even if nothing is left") {
+    const auto body = specimen<2>();
+    auto network = springs_along_edges(box<2>(), {.density = 1000.});
+    network.stiffness.setConstant(1e3);
+    const ReferenceRecorder reference(network);
+    auto loads =
+        random_load_cases(body, {.training = 2, .held_out_loads = 1, .held_out_kinds = 0, .held_out_clamp = 0});
+    for (auto& load : loads) {
+        scale_loads(load.scenario, std::numeric_limits<double>::infinity());
+    }
+    const auto none = record_equilibria<2, double>(reference, body, loads, {.responses = [](const auto& scenarios) {
+                                                       return std::vector<Points<2, double>>(scenarios.size());
+                                                   }});
+    CHECK(none.training.empty());
+    CHECK(none.held_out.empty());
+    REQUIRE(none.warnings.size() == 3);
+    CHECK(none.warnings.front().code == WarningCode::no_equilibrium);
+    const auto stopped = record_equilibria<2, double>(
+        reference, body, random_load_cases(body), {.strain = 0.01, .progress = [](const Progress&) { return false; }});
+    CHECK(stopped.interrupted);
+}
+
 TEST_CASE("damping is told where it can be") {
     const auto recorder = fem_recorder(test::small_box<2>(), linear, 1000.);
     auto options = few<2>();

@@ -39,9 +39,9 @@ struct Candidate {
         data_share{}; ///< of each spring, of matching of motion: above 1/2 the data set its stiffness, else the prior
     Index n_clamped = 0;
     std::string caveat{};
-    double seconds = 0; ///< of its fit
+    double seconds = 0; ///< of its fit, with the set-up of its problem
     CaseScores held_out{};
-    CaseScores training{}; ///< on a sample of what fits learn from
+    CaseScores training{}; ///< on a sample of what fits learn from, where any was asked for
     /// Elastic energy in the reference's training motion beside that of the first network: below 1 the springs resist
     /// that motion less.
     double relative_stiffness = 1;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include <springfit/core/execution.hpp>
 #include <springfit/core/progress.hpp>
@@ -39,14 +40,26 @@ struct CalibrateOptions {
     DampingRule damping = DampingRule::proportional;
     double zeta = 0.05;         ///< of DampingRule::ratio, >= 0
     ExactSolver exact_solver{}; ///< empty: `exact`
+    bool one_pass = false; ///< Method::automatic makes a candidate of the dominant-term approximation's one pass, too
+
+    /// Number of the given network that every fit starts from and takes as its prior; none: acceleration fits the
+    /// first, matching of motion the nearest to the training cases.
+    std::optional<std::size_t> start{};
+    /// Fits learn from every training case. Else matching of motion learns from equilibria and acceleration fits from
+    /// motions in time; each from the others where there are none of its own.
+    bool learn_from_all = false;
 
     /// Weight of the prior in matching of motion: cases are many enough to say more than a closed form does.
     double prior_weight = 1e-5;
-    int horizon = 12;               ///< frames of a window, where there are no equilibria to match
-    int matching_iterations = 40;   ///< of matching of motion at most, >= 0
-    double matching_seconds = 300;  ///< of matching of motion at most, > 0, of wall clock
-    int scored_training_cases = 12; ///< at most, evenly spread, >= 1: what a fit has seen says little
-    double usable_error = 0.25;     ///< held-out error from which on the verdict is `poor`
+    int horizon = 12;                 ///< frames that a window of a motion in time predicts; 0: each motion to its end
+    int steps_per_frame = 1;          ///< of the integrator, where motions in time are matched, >= 1
+    int matching_iterations = 40;     ///< of matching of motion at most, >= 0
+    double matching_tolerance = 1e-3; ///< matching ends when iterations gain less than this part, > 0
+    double matching_seconds = 300;    ///< of matching of motion at most, > 0, of wall clock
+
+    int scored_training_cases = 12;   ///< at most, evenly spread, >= 0: what a fit has seen says little
+    bool score_past_failures = false; ///< a candidate that fails in one case is tried on the others all the same
+    double usable_error = 0.25;       ///< held-out error from which on the verdict is `poor`
 
     Execution execution{};
     /// Called with the name of each stage; returning false ends that stage with the best so far, and the next one

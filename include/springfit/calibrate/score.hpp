@@ -8,11 +8,16 @@
 namespace springfit {
 
 /// Fills in the errors of every candidate on the held-out cases, fits first, and then on a sample of the training's.
-/// A candidate that fails on held-out motion is not tried on the training's. Returns false where the callback ended it;
-/// what was not reached stays infinite.
+/// A candidate that fails on a held-out case is not tried on the rest, unless `options` asks for it, nor on the
+/// training's. Returns false where the callback ended it; what was not reached stays infinite.
 template <int Dim>
 [[nodiscard]] bool score(std::vector<Candidate<Dim>>& candidates, const RecordedCases<Dim, double>& cases,
                          const CalibrateOptions& options = {});
+
+/// The error of `motion_error` over those of the scored cases that have a role; NaN where there are none. `set` is
+/// what they were scored on.
+template <int Dim>
+[[nodiscard]] double error_with(CaseRole role, const CaseScores& scores, const CaseSet<Dim, double>& set);
 
 /// The error of a network on a part of the held-out cases.
 struct PartError {

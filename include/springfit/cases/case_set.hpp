@@ -49,6 +49,23 @@ struct RecordedCases {
     Scalar period = 0;            ///< of the slowest motion that the loads excite, s; 0: not known
     bool interrupted = false;     ///< not all that were asked for are there
     std::vector<Warning> warnings;
+
+    /// Adds a case where its role belongs.
+    void add(LoadCase<Dim, Scalar> load_case, Motion<Dim, Scalar> motion) {
+        auto& set = load_case.role == CaseRole::training ? training : held_out;
+        set.add(std::move(load_case), std::move(motion));
+    }
+
+    /// Adds the cases and warnings of another recording of the same body.
+    void add(RecordedCases other) {
+        for (auto* set : {&other.training, &other.held_out}) {
+            for (std::size_t c = 0; c < set->size(); ++c) {
+                add(std::move(set->cases[c]), std::move(set->motions[c]));
+            }
+        }
+        interrupted = interrupted || other.interrupted;
+        warnings.insert(warnings.end(), other.warnings.begin(), other.warnings.end());
+    }
 };
 
 /// Throws InvalidArgument unless every case has a motion of `n_nodes` nodes with at least one frame, and there are both
@@ -98,10 +115,9 @@ template <int Dim, std::floating_point Scalar>
     }
     RecordedCases<Dim, Scalar> recorded;
     const auto keep = [&](CaseRole role, Motion<Dim, Scalar> motion) {
-        auto& set = role == CaseRole::training ? recorded.training : recorded.held_out;
         LoadCase<Dim, Scalar> load_case{.scenario = replay(motion)};
         load_case.role = role;
-        set.add(std::move(load_case), std::move(motion));
+        recorded.add(std::move(load_case), std::move(motion));
     };
     if (motions.size() == 1) {
         const auto& motion = motions.front();

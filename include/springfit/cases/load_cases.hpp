@@ -50,6 +50,8 @@ struct LoadCaseOptions {
     int held_out_kinds = 5; ///< >= 0; the first five, one of each kind, are under the body's own clamps
     int held_out_clamp = 6; ///< >= 0; with 0, no other clamp set than the training's is looked for
     unsigned seed = 1;      ///< fixes every case
+    /// Fixes the held-out cases alone, which are then the same however many are trained on; none: `seed` fixes them.
+    std::optional<unsigned> held_out_seed{};
 };
 
 /// Random load cases, to learn from and to judge by in three ways (`CaseRole`); none is scaled yet and all are constant
@@ -81,11 +83,12 @@ template <int Dim, std::floating_point Scalar>
         }
     }
 
+    unsigned seed_of_cases = options.seed;
     unsigned case_number = 0;
     std::vector<LoadCase<Dim, Scalar>> cases;
     const auto add = [&](CaseRole role, LoadKind kind, int clamp) {
         // Different seeds give different cases; the factor is odd, so no two cases of one seed are alike.
-        const unsigned seed = 2654435761u * options.seed + 40503u * ++case_number;
+        const unsigned seed = 2654435761u * seed_of_cases + 40503u * ++case_number;
         cases.push_back({.scenario = random_load(kind, clamped[static_cast<std::size_t>(clamp)], seed),
                          .kind = kind,
                          .clamp_set = clamp,
@@ -96,6 +99,10 @@ template <int Dim, std::floating_point Scalar>
     constexpr int n_held_out = static_cast<int>(held_out_kinds.size());
     for (int c = 0; c < options.training; ++c) {
         add(CaseRole::training, kind_of(training_kinds, c / clamps), c % clamps);
+    }
+    if (options.held_out_seed) {
+        seed_of_cases = *options.held_out_seed;
+        case_number = static_cast<unsigned>(clamps); // as after one training case under each clamp
     }
     for (int c = 0; c < options.held_out_loads; ++c) {
         add(CaseRole::unseen_load, kind_of(training_kinds, c / clamps), c % clamps);

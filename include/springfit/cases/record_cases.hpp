@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <functional>
 #include <optional>
 
-#include <springfit/cases/case_recorder.hpp>
-#include <springfit/cases/case_set.hpp>
-#include <springfit/cases/strain.hpp>
-#include <springfit/core/stage.hpp>
+#include <springfit/cases/record_load_cases.hpp>
 
 namespace springfit {
 
@@ -47,9 +43,10 @@ struct RecordCasesOptions {
 /// Load cases of a specimen, recorded: motions in time and equilibria, to learn from and to judge by.
 ///
 /// Loads are scaled by the linear response to them: those of motions to one largest displacement, those of equilibria
-/// to one strain of the specimen's edges. Motions last 1.25 periods of the slowest response u to a load f, omega^2 = f
-/// . u / (u . M u) (Rayleigh's quotient); the ramp takes 0.3 of them, the release comes at 0.6. Cases that the
-/// reference does not come through are left out, with a warning.
+/// to one strain of the specimen's edges. (`record_motions` and `record_equilibria` do it for cases of your own.)
+/// Motions last 1.25 periods of the slowest response u to a load f, omega^2 = f . u / (u . M u) (Rayleigh's quotient);
+/// the ramp takes 0.3 of them, the release comes at 0.6. Cases that the reference does not come through are left out,
+/// with a warning.
 ///
 /// Throws InvalidArgument for an option out of range, for a specimen of other nodes than the reference, for clamps that
 /// do not hold the body ("clamps"), and where no case to learn from or none to judge by came about ("reference"). Where

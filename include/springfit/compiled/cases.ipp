@@ -11,6 +11,20 @@ SPRINGFIT_INSTANTIATION std::vector<LoadCase<2, double>> random_load_cases(const
                                                                            const LoadCaseOptions&);
 SPRINGFIT_INSTANTIATION std::vector<LoadCase<3, double>> random_load_cases(const Specimen<3, double>&,
                                                                            const LoadCaseOptions&);
+SPRINGFIT_INSTANTIATION RecordedCases<2, double> record_equilibria(const CaseRecorder<2, double>&,
+                                                                   const Specimen<2, double>&,
+                                                                   std::vector<LoadCase<2, double>>,
+                                                                   const RecordEquilibriaOptions<2, double>&);
+SPRINGFIT_INSTANTIATION RecordedCases<2, double> record_motions(const CaseRecorder<2, double>&,
+                                                                std::vector<LoadCase<2, double>>, double,
+                                                                const RecordOptions<double>&, const Execution&);
+SPRINGFIT_INSTANTIATION RecordedCases<3, double> record_equilibria(const CaseRecorder<3, double>&,
+                                                                   const Specimen<3, double>&,
+                                                                   std::vector<LoadCase<3, double>>,
+                                                                   const RecordEquilibriaOptions<3, double>&);
+SPRINGFIT_INSTANTIATION RecordedCases<3, double> record_motions(const CaseRecorder<3, double>&,
+                                                                std::vector<LoadCase<3, double>>, double,
+                                                                const RecordOptions<double>&, const Execution&);
 SPRINGFIT_INSTANTIATION RecordedCases<2, double>
 record_cases(const CaseRecorder<2, double>&, const Specimen<2, double>&, const RecordCasesOptions<2, double>&);
 SPRINGFIT_INSTANTIATION RecordedCases<3, double>

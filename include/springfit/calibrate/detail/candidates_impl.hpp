@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <numeric>
+
 #include <springfit/calibrate/candidates.hpp>
 #include <springfit/core/stage.hpp>
 #include <springfit/fit/acceleration/dominant_term.hpp>
@@ -101,20 +103,27 @@ private:
         return m_result.all[best].network;
     }
 
+    /// Numbers of the training cases that a fit learns from: the equilibria or the motions in time, or what there is.
+    [[nodiscard]] std::vector<std::size_t> learnt_from(bool equilibria) const {
+        std::vector<std::size_t> all(m_cases.training.size());
+        std::iota(all.begin(), all.end(), std::size_t(0));
+        std::vector<std::size_t> own;
+        std::copy_if(all.begin(), all.end(), std::back_inserter(own),
+                     [&](std::size_t c) { return m_cases.training.is_static(c) == equilibria; });
+        return own.empty() || m_options.learn_from_all ? all : own;
+    }
+
     void match_motion() {
-        const SpringNetwork<Dim, double> prior = nearest();
+        const SpringNetwork<Dim, double> prior = m_options.start ? m_result.all[*m_options.start].network : nearest();
         TrajectoryOptions how;
         how.execution = m_options.execution;
         how.prior_weight = m_options.prior_weight;
-        std::vector<Motion<Dim, double>> equilibria;
-        for (std::size_t c = 0; c < m_cases.training.size(); ++c) {
-            if (m_cases.training.is_static(c)) {
-                equilibria.push_back(m_cases.training.motions[c]);
-            }
-        }
-        const bool has_equilibria = !equilibria.empty();
-        if (!has_equilibria) {
+        const auto cases = m_cases.training.subset(learnt_from(true));
+        const bool in_time = std::any_of(cases.motions.begin(), cases.motions.end(),
+                                         [](const auto& motion) { return motion.n_frames() > 1; });
+        if (in_time) {
             how.horizon = m_options.horizon;
+            how.steps_per_frame = m_options.steps_per_frame;
             how.parameters.damping.fit = m_options.damping == DampingRule::fitted && (prior.damping.array() > 0).any();
         }
         if (m_options.damping == DampingRule::proportional) {
@@ -122,9 +131,10 @@ private:
         }
         Stage stage(m_options.progress, "fit trajectory");
         try {
-            const TrajectoryProblem<Dim> problem(prior, has_equilibria ? equilibria : m_cases.training.motions, how);
+            const TrajectoryProblem<Dim> problem(prior, cases.motions, how);
             GaussNewtonOptions engine;
             engine.max_iterations = m_options.matching_iterations;
+            engine.tolerance = m_options.matching_tolerance;
             bool out_of_time = false;
             engine.progress = [&, report = stage.part()](const Progress& progress) {
                 out_of_time = stage.seconds() > m_options.matching_seconds;
@@ -160,8 +170,9 @@ private:
     }
 
     void fit_accelerations() {
-        // The first network is the prior: what a spring gets that no motion excites.
-        const SpringNetwork<Dim, double> prior = m_result.all.front().network;
+        // The prior is what a spring gets that no motion excites.
+        const SpringNetwork<Dim, double> prior = m_result.all[m_options.start.value_or(0)].network;
+        const Stopwatch assembling;
         AccelerationOptions<double> how;
         how.parameters.damping.fit = m_options.damping == DampingRule::fitted;
         if (m_options.damping == DampingRule::proportional) {
@@ -170,13 +181,12 @@ private:
         const AccelerationProblem problem = [&] {
             const Stage stage(m_options.progress, "assemble objective");
             AccelerationObjective<Dim, double> objective(prior, how, m_options.execution);
-            for (std::size_t c = 0; c < m_cases.training.size(); ++c) {
-                if (!m_cases.training.is_static(c)) {
-                    objective.add(m_cases.training.motions[c]);
-                }
+            for (std::size_t c : learnt_from(false)) {
+                objective.add(m_cases.training.motions[c]);
             }
             return std::move(objective).problem();
         }();
+        const double assembly = assembling.seconds();
         const auto add = [&](const std::string& name, const auto& solve) {
             Stage stage(m_options.progress, "fit " + name);
             Candidate<Dim> candidate{.name = name, .network = prior};
@@ -189,9 +199,13 @@ private:
             if (m_options.damping == DampingRule::ratio) {
                 set_damping(candidate.network);
             }
-            candidate.seconds = stage.seconds();
+            candidate.seconds = assembly + stage.seconds();
             m_result.all.push_back(std::move(candidate));
         };
+        if (m_options.method == Method::automatic && m_options.one_pass) {
+            add("one_pass",
+                [&](const ProgressCallback&) { return one_pass(problem, {.execution = m_options.execution}); });
+        }
         if (m_options.method == Method::automatic || m_options.method == Method::dominant_term) {
             add("dominant_term", [&](ProgressCallback progress) {
                 DominantTermOptions sweeps;
@@ -223,6 +237,15 @@ Candidates<Dim> make_candidates(const std::vector<NamedNetwork<Dim>>& given, con
                                 const CalibrateOptions& options) {
     require(!given.empty(), "given", "a network to start from", "none");
     require(options.zeta >= 0 && std::isfinite(options.zeta), "zeta", "a value not below 0", options.zeta);
+    require(!options.start || *options.start < given.size(), "start", text("a number in [0, ", given.size(), ")"),
+            options.start.value_or(0));
+    require(options.prior_weight >= 0 && std::isfinite(options.prior_weight), "prior_weight", "a weight not below 0",
+            options.prior_weight);
+    require(options.horizon >= 0, "horizon", "0 or a number of frames", options.horizon);
+    require(options.steps_per_frame >= 1, "steps_per_frame", "at least one", options.steps_per_frame);
+    require(options.matching_iterations >= 0, "matching_iterations", "a number not below 0",
+            options.matching_iterations);
+    require(options.matching_tolerance > 0, "matching_tolerance", "a positive value", options.matching_tolerance);
     require(options.matching_seconds > 0, "matching_seconds", "a positive time, s", options.matching_seconds);
     for (const auto& named : given) {
         validate(named.network);

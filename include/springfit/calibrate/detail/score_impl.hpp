@@ -11,10 +11,11 @@ namespace springfit {
 template <int Dim>
 bool score(std::vector<Candidate<Dim>>& candidates, const RecordedCases<Dim, double>& cases,
            const CalibrateOptions& options) {
-    require(options.scored_training_cases >= 1, "scored_training_cases", "at least one", options.scored_training_cases);
+    require(options.scored_training_cases >= 0, "scored_training_cases", "a number not below 0",
+            options.scored_training_cases);
     const auto most = static_cast<std::size_t>(options.scored_training_cases);
     std::vector<std::size_t> sampled;
-    for (std::size_t c = 0; c < cases.training.size(); c += (cases.training.size() + most - 1) / most) {
+    for (std::size_t c = 0; most > 0 && c < cases.training.size(); c += (cases.training.size() + most - 1) / most) {
         sampled.push_back(c);
     }
     const auto sample = cases.training.subset(sampled);
@@ -25,9 +26,10 @@ bool score(std::vector<Candidate<Dim>>& candidates, const RecordedCases<Dim, dou
     std::size_t part = 0;
     const auto scores_of = [&](const SpringNetwork<Dim, double>& network, const CaseSet<Dim, double>& set,
                                const std::vector<std::size_t>& numbers) {
-        auto found = motion_error(
-            network, set.scenarios(), set.motions, stage.part(part++),
-            {.max_iterations = detail::scoring_iterations, .stop_at_failure = true, .execution = options.execution});
+        auto found = motion_error(network, set.scenarios(), set.motions, stage.part(part++),
+                                  {.max_iterations = detail::scoring_iterations,
+                                   .stop_at_failure = !options.score_past_failures,
+                                   .execution = options.execution});
         if (stage.stopped()) {
             found.error = std::numeric_limits<double>::infinity();
         }
@@ -36,7 +38,8 @@ bool score(std::vector<Candidate<Dim>>& candidates, const RecordedCases<Dim, dou
     for (auto candidate = candidates.rbegin(); candidate != candidates.rend() && !stage.stopped(); ++candidate) {
         candidate->held_out = scores_of(candidate->network, cases.held_out, all);
     }
-    for (auto candidate = candidates.rbegin(); candidate != candidates.rend() && !stage.stopped(); ++candidate) {
+    for (auto candidate = candidates.rbegin(); candidate != candidates.rend() && !sampled.empty() && !stage.stopped();
+         ++candidate) {
         if (std::isfinite(candidate->held_out.error)) {
             candidate->training = scores_of(candidate->network, sample, sampled);
         }
@@ -44,15 +47,19 @@ bool score(std::vector<Candidate<Dim>>& candidates, const RecordedCases<Dim, dou
     return !stage.stopped();
 }
 
-template <int Dim>
-std::vector<PartError> held_out_parts(const Candidate<Dim>& candidate, const CaseSet<Dim, double>& held_out) {
-    constexpr std::array names{"motions_in_time", "equilibria_of_trained_kinds", "equilibria_of_unseen_kinds"};
-    std::array<double, names.size()> from_reference{};
-    std::array<double, names.size()> of_reference{};
-    for (std::size_t s = 0; s < candidate.held_out.cases.size(); ++s) {
-        const std::size_t c = candidate.held_out.cases[s];
-        const auto& motion = held_out.motions[c];
-        const std::size_t part = !held_out.is_static(c) ? 0 : held_out.cases[c].role != CaseRole::unseen_kind ? 1 : 2;
+namespace detail {
+
+/// The error of `motion_error` over the scored cases that `takes`, from those of each case; NaN where there are none.
+template <int Dim, class Takes>
+double error_over(const CaseScores& scores, const CaseSet<Dim, double>& set, const Takes& takes) {
+    double from_reference = 0;
+    double of_reference = 0;
+    for (std::size_t s = 0; s < scores.cases.size(); ++s) {
+        const std::size_t c = scores.cases[s];
+        if (!takes(c)) {
+            continue;
+        }
+        const auto& motion = set.motions[c];
         const FreeNodes free(motion.n_nodes(), motion.clamped);
         double size = 0;
         for (const auto& positions : motion.positions) {
@@ -60,15 +67,31 @@ std::vector<PartError> held_out_parts(const Candidate<Dim>& candidate, const Cas
                 size += (positions.col(i) - motion.rest_positions.col(i)).squaredNorm();
             }
         }
-        from_reference[part] += candidate.held_out.errors[s] * candidate.held_out.errors[s] * size;
-        of_reference[part] += size;
+        from_reference += scores.errors[s] * scores.errors[s] * size;
+        of_reference += size;
     }
+    return of_reference > 0 ? std::sqrt(from_reference / of_reference) : std::numeric_limits<double>::quiet_NaN();
+}
+
+} // namespace detail
+
+template <int Dim>
+double error_with(CaseRole role, const CaseScores& scores, const CaseSet<Dim, double>& set) {
+    return detail::error_over(scores, set, [&](std::size_t c) { return set.cases[c].role == role; });
+}
+
+template <int Dim>
+std::vector<PartError> held_out_parts(const Candidate<Dim>& candidate, const CaseSet<Dim, double>& held_out) {
     std::vector<PartError> parts;
-    for (std::size_t p = 0; p < names.size(); ++p) {
-        if (of_reference[p] > 0) {
-            parts.push_back({names[p], std::sqrt(from_reference[p] / of_reference[p])});
+    const auto add = [&](std::string_view name, const auto& takes) {
+        if (const double error = detail::error_over(candidate.held_out, held_out, takes); !std::isnan(error)) {
+            parts.push_back({name, error});
         }
-    }
+    };
+    const auto is_trained = [&](std::size_t c) { return held_out.cases[c].role != CaseRole::unseen_kind; };
+    add("motions_in_time", [&](std::size_t c) { return !held_out.is_static(c); });
+    add("equilibria_of_trained_kinds", [&](std::size_t c) { return held_out.is_static(c) && is_trained(c); });
+    add("equilibria_of_unseen_kinds", [&](std::size_t c) { return held_out.is_static(c) && !is_trained(c); });
     return parts;
 }
 

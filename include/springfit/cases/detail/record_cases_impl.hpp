@@ -117,46 +117,16 @@ private:
         RecordOptions<Scalar> how;
         how.frames = m_options.frames;
         how.dt = duration / static_cast<Scalar>(how.frames - 1);
-
-        Stage stage(m_options.progress, "record motions", cases.size());
-        std::vector<Recording<Dim, Scalar>> recordings(cases.size());
-        for (auto& recording : recordings) {
-            recording.status = Status::interrupted;
-        }
-        m_options.execution.for_chunks(static_cast<Index>(cases.size()), 1, [&](Index, Index begin, Index) {
-            const auto c = static_cast<std::size_t>(begin);
-            set_amplitude(scenarios[c], ramp_and_release(Scalar(0.3) * duration, Scalar(0.6) * duration));
-            auto mine = how;
-            mine.progress = stage.part(c);
-            if (!stage.stopped()) {
-                recordings[c] = m_reference.record(scenarios[c], m_result.stiffness_damping, mine);
-            }
-        });
+        how.progress = m_options.progress;
         for (std::size_t c = 0; c < cases.size(); ++c) {
-            auto& [motion, status] = recordings[c];
-            if (status == Status::interrupted) {
-                m_result.interrupted = true;
-                continue;
-            }
-            if (status != Status::converged) {
-                m_result.warnings.push_back(
-                    {.code = WarningCode::reference_ended_early,
-                     .about = scenarios[c].name,
-                     .message = text("load case ", scenarios[c].name, ": the reference ended as ", to_string(status),
-                                     " after ", motion.n_frames(), " of ", how.frames, " frames"),
-                     .advice = "a smaller deformation may help",
-                     .values = {{"frames", static_cast<double>(motion.n_frames())},
-                                {"frames_wanted", static_cast<double>(how.frames)}}});
-            }
-            if (motion.n_frames() >= 3) {
-                cases[c].scenario = std::move(scenarios[c]);
-                keep(std::move(cases[c]), std::move(motion));
-            }
+            set_amplitude(scenarios[c], ramp_and_release(Scalar(0.3) * duration, Scalar(0.6) * duration));
+            cases[c].scenario = std::move(scenarios[c]);
         }
+        m_result.add(springfit::record_motions(m_reference, std::move(cases), m_result.stiffness_damping, how,
+                                               m_options.execution));
     }
 
     void record_equilibria() {
-        require(m_specimen.edges.cols() > 0, "specimen", "edges, whose strain loads are scaled by", "none");
         Cases cases = random_load_cases(m_specimen, {.training = m_options.training_equilibria,
                                                      .clamps = m_options.clamp_sets,
                                                      .held_out_loads = m_options.held_out_loads,
@@ -193,40 +163,13 @@ private:
     }
 
     void record_equilibria(Cases cases, Scalar strain, const ProgressCallback& progress) {
-        if (cases.empty()) {
-            return;
+        if (!cases.empty()) {
+            m_result.add(springfit::record_equilibria(m_reference, m_specimen, std::move(cases),
+                                                      {.strain = strain,
+                                                       .responses = m_options.responses,
+                                                       .execution = m_options.execution,
+                                                       .progress = progress}));
         }
-        Scenarios scenarios;
-        for (const auto& load_case : cases) {
-            scenarios.push_back(load_case.scenario);
-        }
-        (void)scale_to_strain<Dim, Scalar>(scenarios, m_specimen.edges, m_specimen.rest_positions, strain,
-                                           [&](const auto& all) { return responses(all); });
-        auto recordings =
-            m_reference.record_statics(scenarios, {.execution = m_options.execution, .progress = progress});
-        for (std::size_t c = 0; c < cases.size(); ++c) {
-            auto& [motion, status] = recordings[c];
-            if (status == Status::converged) {
-                motion.name = "static " + scenarios[c].name;
-                cases[c].scenario = std::move(scenarios[c]);
-                cases[c].strain = strain;
-                keep(std::move(cases[c]), std::move(motion));
-            } else if (status == Status::interrupted) {
-                m_result.interrupted = true;
-            } else {
-                m_result.warnings.push_back(
-                    {.code = WarningCode::no_equilibrium,
-                     .about = scenarios[c].name,
-                     .message = text("static load case ", scenarios[c].name, ": the reference found no equilibrium"),
-                     .advice = "a smaller strain may help",
-                     .values = {{"strain", static_cast<double>(strain)}}});
-            }
-        }
-    }
-
-    void keep(LoadCase<Dim, Scalar> load_case, Motion<Dim, Scalar> motion) {
-        auto& set = load_case.role == CaseRole::training ? m_result.training : m_result.held_out;
-        set.add(std::move(load_case), std::move(motion));
     }
 
     const CaseRecorder<Dim, Scalar>& m_reference;

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <springfit/cases/record_load_cases.hpp>
+
+namespace springfit {
+
+template <int Dim, std::floating_point Scalar>
+RecordedCases<Dim, Scalar>
+record_equilibria(const CaseRecorder<Dim, Scalar>& reference, const Specimen<Dim, Scalar>& specimen,
+                  std::vector<LoadCase<Dim, Scalar>> cases,
+                  const std::type_identity_t<RecordEquilibriaOptions<Dim, Scalar>>& options) {
+    require(specimen.edges.cols() > 0, "specimen", "edges, whose strain loads are scaled by", "none");
+    std::vector<Scenario<Dim, Scalar>> scenarios;
+    for (const auto& load_case : cases) {
+        scenarios.push_back(load_case.scenario);
+    }
+    const StaticRecordOptions<Scalar> how{.execution = options.execution, .progress = options.progress};
+    (void)scale_to_strain<Dim, Scalar>(
+        scenarios, specimen.edges, specimen.rest_positions, options.strain, [&](const auto& all) {
+            return options.responses ? options.responses(all)
+                                     : reference.linear_responses(all, {.execution = options.execution});
+        });
+    auto recordings = reference.record_statics(scenarios, how);
+    RecordedCases<Dim, Scalar> recorded;
+    for (std::size_t c = 0; c < cases.size(); ++c) {
+        auto& [motion, status] = recordings[c];
+        if (status == Status::converged) {
+            motion.name = "static " + scenarios[c].name;
+            cases[c].scenario = std::move(scenarios[c]);
+            cases[c].strain = options.strain;
+            recorded.add(std::move(cases[c]), std::move(motion));
+        } else if (status == Status::interrupted) {
+            recorded.interrupted = true;
+        } else {
+            recorded.warnings.push_back(
+                {.code = WarningCode::no_equilibrium,
+                 .about = scenarios[c].name,
+                 .message = text("static load case ", scenarios[c].name, ": the reference found no equilibrium"),
+                 .advice = "a smaller strain may help",
+                 .values = {{"strain", static_cast<double>(options.strain)}}});
+        }
+    }
+    return recorded;
+}
+
+template <int Dim, std::floating_point Scalar>
+RecordedCases<Dim, Scalar>
+record_motions(const CaseRecorder<Dim, Scalar>& reference, std::vector<LoadCase<Dim, Scalar>> cases,
+               std::type_identity_t<Scalar> stiffness_damping,
+               const std::type_identity_t<RecordOptions<Scalar>>& options, const Execution& execution) {
+    Stage stage(options.progress, "record motions", cases.size());
+    std::vector<Recording<Dim, Scalar>> recordings(cases.size());
+    for (auto& recording : recordings) {
+        recording.status = Status::interrupted;
+    }
+    RecordedCases<Dim, Scalar> recorded;
+    recorded.stiffness_damping = reference.takes_damping() ? stiffness_damping : reference.stiffness_damping();
+    execution.for_chunks(static_cast<Index>(cases.size()), 1, [&](Index, Index begin, Index) {
+        const auto c = static_cast<std::size_t>(begin);
+        auto mine = options;
+        mine.progress = stage.part(c);
+        if (!stage.stopped()) {
+            recordings[c] = reference.record(cases[c].scenario, stiffness_damping, mine);
+        }
+    });
+    for (std::size_t c = 0; c < cases.size(); ++c) {
+        auto& [motion, status] = recordings[c];
+        const std::string& name = cases[c].scenario.name;
+        if (status == Status::interrupted) {
+            recorded.interrupted = true;
+            continue;
+        }
+        if (status != Status::converged) {
+            recorded.warnings.push_back(
+                {.code = WarningCode::reference_ended_early,
+                 .about = name,
+                 .message = text("load case ", name, ": the reference ended as ", to_string(status), " after ",
+                                 motion.n_frames(), " of ", options.frames, " frames"),
+                 .advice = "a smaller deformation may help",
+                 .values = {{"frames", static_cast<double>(motion.n_frames())},
+                            {"frames_wanted", static_cast<double>(options.frames)}}});
+        }
+        if (motion.n_frames() >= 3) {
+            recorded.add(std::move(cases[c]), std::move(motion));
+        }
+    }
+    return recorded;
+}
+
+} // namespace springfit
