@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A mesh of any cells as springs, as a specimen and as a network's surface.
 
-#include <springfit/calibrate/given.hpp>
+#include <springfit/calibrate/calibrate.hpp>
 #include <springfit/cases/clamp_sets.hpp>
 #include <springfit/network/builders.hpp>
 
@@ -35,16 +35,20 @@ Discretisation<Dim> discretise(const AnyMesh& any, const FitOptions& options) {
 }
 
 template <int Dim>
-std::vector<NamedNetwork<Dim>> closed_forms_of(const AnyMesh& any, const SpringNetwork<Dim, double>& network,
-                                               const FitOptions& options) {
+std::vector<NetworkVariant<Dim>> variants_of(const AnyMesh& any, const FitOptions& options) {
     return std::visit(
-        [&]<int MeshDim, CellType Cell>(const Mesh<MeshDim, double, Cell>& mesh) -> std::vector<NamedNetwork<Dim>> {
+        [&]<int MeshDim, CellType Cell>(const Mesh<MeshDim, double, Cell>& mesh) -> std::vector<NetworkVariant<Dim>> {
             if constexpr (MeshDim != Dim) {
                 throw InvalidArgument("mesh", text("dimension ", Dim), text(MeshDim));
             } else {
-                return closed_form_networks(
-                    mesh, network,
-                    {.young = options.young, .poisson = options.poisson, .thickness = options.thickness.value_or(1)});
+                BodyOptions<Dim> body;
+                body.parts = options.parts == "edges" ? Parts::given : Parts::automatic;
+                body.density = options.density;
+                body.thickness = options.thickness.value_or(1);
+                body.second_ring = options.second_ring;
+                body.volume = options.volume;
+                return network_variants(
+                    mesh, {.young = options.young, .poisson = options.poisson, .thickness = body.thickness}, body);
             }
         },
         any);
@@ -135,10 +139,8 @@ std::vector<int> nodes_to_clamp(const std::vector<std::string>& clamps, const Po
 
 template Discretisation<2> discretise<2>(const AnyMesh&, const FitOptions&);
 template Discretisation<3> discretise<3>(const AnyMesh&, const FitOptions&);
-template std::vector<NamedNetwork<2>> closed_forms_of<2>(const AnyMesh&, const SpringNetwork<2, double>&,
-                                                         const FitOptions&);
-template std::vector<NamedNetwork<3>> closed_forms_of<3>(const AnyMesh&, const SpringNetwork<3, double>&,
-                                                         const FitOptions&);
+template std::vector<NetworkVariant<2>> variants_of<2>(const AnyMesh&, const FitOptions&);
+template std::vector<NetworkVariant<3>> variants_of<3>(const AnyMesh&, const FitOptions&);
 template Specimen<2, double> specimen_of<2>(const AnyMesh&, const FitOptions&);
 template Specimen<3, double> specimen_of<3>(const AnyMesh&, const FitOptions&);
 template FineSurface<2> surface_of<2>(const FineMesh&);

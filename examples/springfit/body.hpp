@@ -59,10 +59,9 @@ struct Discretisation {
 template <int Dim>
 [[nodiscard]] Discretisation<Dim> discretise(const AnyMesh& mesh, const FitOptions& options);
 
-/// The network with the values of every closed form that holds for its mesh.
+/// The networks to try, with the values of every closed form that holds for their mesh.
 template <int Dim>
-[[nodiscard]] std::vector<springfit::NamedNetwork<Dim>>
-closed_forms_of(const AnyMesh& mesh, const springfit::SpringNetwork<Dim, double>& network, const FitOptions& options);
+[[nodiscard]] std::vector<springfit::NetworkVariant<Dim>> variants_of(const AnyMesh& mesh, const FitOptions& options);
 
 /// The body that load cases are recorded of, held where `--clamp` says.
 template <int Dim>

@@ -144,7 +144,12 @@ public:
         if (fine_mesh) {
             take_fine_mesh();
         }
-        m_given = closed_forms_of<Dim>(mesh, m_body.network, options);
+        m_variants = variants_of<Dim>(mesh, options);
+        for (auto& variant : m_variants) {
+            for (auto& given : variant.given) {
+                given.network.mass = m_body.network.mass; // of the finer mesh, where there is one
+            }
+        }
     }
 
     /// Motions that another program recorded.
@@ -174,7 +179,7 @@ public:
         take(m_options.static_cases, record.training_equilibria);
         take(m_options.strain, record.strain);
         record.damping_ratio = m_options.damping_ratio;
-        record.stiffness_damping = light_damping(m_given.front().network);
+        record.stiffness_damping = light_damping(m_variants.front().given.front().network);
         record.seed = m_options.seed;
         if (!matches_motion(m_how.method)) {
             record.training_equilibria = 0; // nothing would learn from them
@@ -203,7 +208,6 @@ public:
         m_source.reference = {{"kind", "fem"},
                               {"element", reference.element},
                               {"material", m_options.material.value_or(default_material)},
-                              {"deformation", record.deformation},
                               {"clamps", sides_to_clamp(m_options)}};
         if (m_fine) {
             m_source.reference["nodes"] = m_fine->nodes.rest_positions.cols();
@@ -220,7 +224,7 @@ public:
         if (cases.interrupted && (cases.training.empty() || cases.held_out.empty())) {
             throw Interrupted();
         }
-        auto calibration = calibrate(m_given, std::move(cases), m_how);
+        auto calibration = calibrate(m_variants, std::move(cases), m_how);
         const Stopwatch at_fine;
         if (m_fine) {
             judge_fine_nodes(calibration);
@@ -239,7 +243,10 @@ public:
             std::fprintf(stderr, "warning: %s\n", to_string(warning).c_str());
         }
         write(calibration, folder, std::move(seconds));
-        return calibration.status == Status::interrupted ? exit_interrupted : 0;
+        const Verdict verdict = calibration.verdict;
+        std::printf("verdict: %s (held-out error %.4f)\n", std::string(to_string(verdict)).c_str(),
+                    calibration.best().held_out.error);
+        return calibration.status == Status::interrupted ? exit_interrupted : is_usable(verdict) ? 0 : exit_poor;
     }
 
 private:
@@ -308,7 +315,7 @@ private:
     const std::optional<FineMesh>& m_fine_mesh;
     CalibrateOptions m_how;
     Discretisation<Dim> m_body;
-    std::vector<NamedNetwork<Dim>> m_given;
+    std::vector<NetworkVariant<Dim>> m_variants;
     std::optional<FineSide<Dim>> m_fine;
     io::CalibrationSource m_source;
 };

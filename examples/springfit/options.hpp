@@ -35,6 +35,7 @@ struct FitOptions {
     std::string exact_solver = "native";
     std::string damping = "proportional";
     std::optional<double> zeta; ///< of `--damping ratio`
+    std::string parts = "auto";
     bool second_ring = false;
     bool volume = false;               ///< cells that hold their volume, too
     std::optional<double> fit_seconds; ///< for matching motion

@@ -27,6 +27,21 @@ struct Calibration {
     [[nodiscard]] const Candidate<Dim>& best() const { return candidates[choice.candidate]; }
 };
 
+/// A body's network with more or fewer parts than another: along the edges alone, with cells that hold their volume, with
+/// the second ring.
+template <int Dim>
+struct NetworkVariant {
+    std::string parts;                     ///< what it has, for names: "cells"; empty for the first
+    std::vector<NamedNetwork<Dim>> given{}; ///< networks with values to start from
+};
+
+/// From variants of a network and a reference's motions to the network that moves most like it. The variants are tried
+/// in their order until the best so far is good; of those that are near each other, the one with the fewest parts is
+/// returned. All but the last are fitted in few iterations.
+template <int Dim>
+[[nodiscard]] Calibration<Dim> calibrate(const std::vector<NetworkVariant<Dim>>& variants,
+                                         RecordedCases<Dim, double> cases, const CalibrateOptions& options = {});
+
 /// From networks with values to start from and a reference's motions to the network that moves most like it.
 ///
 ///     auto result = calibrate(network, split_motions<3, double>({recorded}));
@@ -37,7 +52,9 @@ struct Calibration {
 /// candidates that came about are judged, and `verdict` and `warnings` say what they are worth.
 template <int Dim>
 [[nodiscard]] Calibration<Dim> calibrate(const std::vector<NamedNetwork<Dim>>& given, RecordedCases<Dim, double> cases,
-                                         const CalibrateOptions& options = {});
+                                         const CalibrateOptions& options = {}) {
+    return calibrate(std::vector<NetworkVariant<Dim>>{{"", given}}, std::move(cases), options);
+}
 
 /// The same from one network, whose own stiffness is the prior.
 template <int Dim>
@@ -46,6 +63,12 @@ template <int Dim>
     return calibrate(std::vector<NamedNetwork<Dim>>{{"given", network}}, std::move(cases), options);
 }
 
+/// Which springs and cells a body gets.
+enum class Parts {
+    automatic, ///< springs along edges; where they end worse than good, with cells, then with the second ring, too
+    given      ///< those that are asked for
+};
+
 /// A body of one material, its springs and how its finite element reference is recorded.
 template <int Dim>
 struct BodyOptions {
@@ -53,8 +76,9 @@ struct BodyOptions {
     double thickness = 1; ///< h, m, > 0, of plane bodies
     std::vector<int>
         clamped{};            ///< nodes of the mesh's corners that are held; empty: clamp sets are found (`clamp_sets`)
-    bool second_ring = false; ///< springs between opposite vertices of neighbouring simplices, too
-    bool volume = false;      ///< simplices that hold their volume, too; for nearly incompressible materials
+    Parts parts = Parts::automatic; ///< `given` where `second_ring` or `volume` is
+    bool second_ring = false;       ///< springs between opposite vertices of neighbouring simplices, too
+    bool volume = false;            ///< cells that hold their volume, too; for nearly incompressible materials
     std::optional<fem::Dilatation> dilatation{}; ///< of the reference; default: `reference_dilatation`
     RecordCasesOptions<Dim, double> record{};    ///< its execution and progress are those of `how`
     CalibrateOptions how{};
@@ -71,6 +95,26 @@ template <int Dim, CellType Cell>
                                       .thickness = body.thickness});
 }
 
+/// The variants that `body.parts` says, each with the values of the closed forms.
+template <int Dim, CellType Cell>
+[[nodiscard]] std::vector<NetworkVariant<Dim>> network_variants(const Mesh<Dim, double, Cell>& mesh,
+                                                                const IsotropicSolid& solid, BodyOptions<Dim> body) {
+    std::vector<NetworkVariant<Dim>> variants;
+    const auto add = [&](const char* parts) {
+        variants.push_back({parts, closed_form_networks(mesh, springs_of(mesh, body), solid)});
+    };
+    add("");
+    if (body.parts == Parts::automatic && !body.volume && !body.second_ring && !is_membrane<Dim, double, Cell>) {
+        body.volume = true;
+        add("cells");
+        if constexpr (SimplexCell<Cell>) {
+            body.second_ring = true;
+            add("cells, second ring");
+        }
+    }
+    return variants;
+}
+
 /// From a mesh and its material to the network that moves most like its finite element model.
 ///
 ///     auto result = calibrate(mesh, fem::NeoHookean{.young = 5e4, .poisson = 0.45}, {.density = 1000, .volume =
@@ -85,9 +129,8 @@ template <int Dim, CellType Cell, fem::Material Mat>
                                          const BodyOptions<Dim>& body) {
     const Stopwatch stopwatch;
     const auto corners = corner_mesh(mesh);
-    const auto given =
-        closed_form_networks(corners, springs_of(corners, body),
-                             {.young = material.young, .poisson = material.poisson, .thickness = body.thickness});
+    const auto variants = network_variants(
+        corners, {.young = material.young, .poisson = material.poisson, .thickness = body.thickness}, body);
     auto specimen = specimen_of(corners, body.density, body.thickness);
     if (!body.clamped.empty()) {
         specimen.clamps = {{body.clamped, {}}};
@@ -99,7 +142,7 @@ template <int Dim, CellType Cell, fem::Material Mat>
     record.execution = body.how.execution;
     record.progress = body.how.progress;
     if (!record.damping_ratio && record.stiffness_damping == 0) {
-        record.stiffness_damping = light_damping(given.front().network);
+        record.stiffness_damping = light_damping(variants.front().given.front().network);
     }
     fem::ModelOptions<double> model;
     model.thickness = body.thickness;
@@ -107,7 +150,7 @@ template <int Dim, CellType Cell, fem::Material Mat>
     const auto reference = fem_recorder(mesh, material, body.density, model);
     auto cases = record_cases<Dim, double>(reference, specimen, record);
     const double recording = stopwatch.seconds();
-    auto result = calibrate(given, std::move(cases), body.how);
+    auto result = calibrate(variants, std::move(cases), body.how);
     result.seconds.insert(result.seconds.begin(), {"reference", recording});
     return result;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <string>
@@ -24,8 +25,16 @@ struct NamedNetwork {
 struct CaseScores {
     double error = std::numeric_limits<double>::infinity(); ///< of the whole set; infinite until it is scored in full
     std::vector<std::size_t> cases;                         ///< numbers in the case set
-    std::vector<double> errors;                             ///< of each of them; infinite where it failed
+    std::vector<double> errors;                             ///< of each of them; 1 where it failed
     std::vector<Status> statuses;                           ///< how each ended; `interrupted` where it was not reached
+
+    [[nodiscard]] bool is_scored() const { return error < std::numeric_limits<double>::infinity(); }
+    /// Cases that the network could not be simulated in.
+    [[nodiscard]] std::size_t n_failed() const {
+        return static_cast<std::size_t>(std::count_if(statuses.begin(), statuses.end(), [](Status status) {
+            return status != Status::converged && status != Status::interrupted;
+        }));
+    }
 };
 
 /// A network beside others, with its fit and its errors.
@@ -45,6 +54,9 @@ struct Candidate {
     /// Elastic energy in the reference's training motion beside that of the first network: below 1 the springs resist
     /// that motion less.
     double relative_stiffness = 1;
+
+    /// Springs and cells that a step goes through.
+    [[nodiscard]] Index n_parts() const { return network.n_springs() + network.n_cells(); }
 
     /// How its fit ended; `converged` for a network that was given.
     [[nodiscard]] Status status() const {

@@ -16,10 +16,16 @@ enum class ChoiceRule {
 /// The worth of the returned network, by its error on cases that no fit has seen.
 enum class Verdict {
     good,      ///< it moves like the reference
-    poor,      ///< it does not: its held-out error is not below `CalibrateOptions::usable_error`
-    unusable,  ///< it fails in some held-out case
+    fair,      ///< it moves like the reference with an error that can be seen, or fails in a held-out case
+    poor,      ///< it does not move like the reference
+    unusable,  ///< it has nothing of the reference's motion, or what it was fitted to taught it nothing
     unfinished ///< the callback ended the work before all of it was judged
 };
+
+/// True where the network is of use: good or fair.
+[[nodiscard]] constexpr bool is_usable(Verdict verdict) {
+    return verdict == Verdict::good || verdict == Verdict::fair;
+}
 
 [[nodiscard]] constexpr std::string_view to_string(ChoiceRule rule) {
     return rule == ChoiceRule::asked_for ? "asked_for" : "least_held_out_error";
@@ -28,6 +34,7 @@ enum class Verdict {
 [[nodiscard]] constexpr std::string_view to_string(Verdict verdict) {
     switch (verdict) {
     case Verdict::good: return "good";
+    case Verdict::fair: return "fair";
     case Verdict::poor: return "poor";
     case Verdict::unusable: return "unusable";
     case Verdict::unfinished: return "unfinished";
@@ -40,34 +47,46 @@ struct Choice {
     ChoiceRule rule = ChoiceRule::least_held_out_error;
 };
 
-/// The scored candidate with the least held-out error, the first of equals; or that of the method that was named, which
-/// comes last. Throws InvalidArgument where there is none.
+/// The scored candidate with the least held-out error, or among those near to it (`CalibrateOptions::near_equal`) the
+/// one with the fewest springs and cells; only fits where a method was named. Throws InvalidArgument where there is none.
 template <int Dim>
 [[nodiscard]] Choice choose(const std::vector<Candidate<Dim>>& candidates, const CalibrateOptions& options = {}) {
     require(!candidates.empty(), "candidates", "at least one", "none");
-    if (options.method != Method::automatic && options.method != Method::closed_form) {
-        return {candidates.size() - 1, ChoiceRule::asked_for};
-    }
-    std::size_t best = 0;
-    for (std::size_t c = 0; c < candidates.size(); ++c) {
-        if (candidates[c].held_out.error < candidates[best].held_out.error) {
+    require(options.near_equal >= 1, "near_equal", "a factor not below 1", options.near_equal);
+    const bool is_asked_for = options.method != Method::automatic && options.method != Method::closed_form;
+    const auto is_fit = [&](std::size_t c) { return candidates[c].acceleration || candidates[c].trajectory; };
+    std::size_t best = candidates.size() - 1;
+    const auto error = [&](std::size_t c) { return candidates[c].held_out.error; };
+    const auto may_be = [&](std::size_t c) { return !is_asked_for || is_fit(c) || !is_fit(best); };
+    for (std::size_t c = candidates.size(); c-- > 0;) {
+        if (may_be(c) && (error(c) <= error(best) || (is_asked_for && is_fit(c) && !is_fit(best)))) {
             best = c;
         }
     }
-    return {best, ChoiceRule::least_held_out_error};
+    std::size_t simplest = best;
+    for (std::size_t c = 0; c < candidates.size(); ++c) {
+        const bool is_simpler = candidates[c].n_parts() < candidates[simplest].n_parts();
+        const bool is_as_simple = candidates[c].n_parts() == candidates[simplest].n_parts();
+        if (may_be(c) && error(c) <= options.near_equal * error(best) &&
+            (is_simpler || (is_as_simple && error(c) < error(simplest)))) {
+            simplest = c;
+        }
+    }
+    return {simplest, is_asked_for ? ChoiceRule::asked_for : ChoiceRule::least_held_out_error};
 }
 
-[[nodiscard]] inline Verdict verdict_on(double held_out_error, const CalibrateOptions& options = {}) {
-    return !(held_out_error < std::numeric_limits<double>::infinity()) ? Verdict::unusable
-           : held_out_error < options.usable_error                     ? Verdict::good
-                                                                       : Verdict::poor;
+/// The verdict on a network by its errors on cases that no fit has seen.
+[[nodiscard]] inline Verdict verdict_on(const CaseScores& held_out, const VerdictLimits& limits = {}) {
+    return !(held_out.error < limits.unusable)                            ? Verdict::unusable
+           : !(held_out.error < limits.poor)                              ? Verdict::poor
+           : !(held_out.error < limits.fair) || held_out.n_failed() > 0   ? Verdict::fair
+                                                                          : Verdict::good;
 }
 
-/// Warnings about scored candidates, for the user.
+/// Warnings about a candidate, for the user of its network.
 template <int Dim>
-[[nodiscard]] std::vector<Warning> warnings_on(const std::vector<Candidate<Dim>>& candidates) {
+[[nodiscard]] std::vector<Warning> warnings_on(const Candidate<Dim>& candidate) {
     std::vector<Warning> warnings;
-    for (const auto& candidate : candidates) {
         if (candidate.acceleration && candidate.relative_stiffness < 0.9) {
             warnings.push_back({.code = WarningCode::softer_than_closed_form,
                                 .about = candidate.name,
@@ -95,7 +114,6 @@ template <int Dim>
                                 .advice = {},
                                 .values = {{"springs", static_cast<double>(candidate.n_clamped)}}});
         }
-    }
     return warnings;
 }
 

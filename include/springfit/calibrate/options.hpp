@@ -31,6 +31,14 @@ enum class DampingRule {
     fitted        ///< as the fit finds it
 };
 
+/// Held-out errors from which on a network is not good, not fair, and not even poor. Our definition: at 0.1 a motion is
+/// hard to tell from the reference beside it, at 0.25 it is like it, at 0.6 it shares its direction.
+struct VerdictLimits {
+    double fair = 0.1;
+    double poor = 0.25;
+    double unusable = 0.6;
+};
+
 /// A solver of the acceleration fit to its global minimum: `exact`, or `ipopt::exact`.
 using ExactSolver = std::function<AccelerationReport(const AccelerationProblem&, const ExactOptions&)>;
 
@@ -58,8 +66,9 @@ struct CalibrateOptions {
     double matching_seconds = 300;    ///< of matching of motion at most, > 0, of wall clock
 
     int scored_training_cases = 12;   ///< at most, evenly spread, >= 0: what a fit has seen says little
-    bool score_past_failures = false; ///< a candidate that fails in one case is tried on the others all the same
-    double usable_error = 0.25;       ///< held-out error from which on the verdict is `poor`
+    double near_equal = 1.2;          ///< of networks whose errors differ by less than this factor, the one with fewer
+                                      ///< springs and cells is returned, >= 1
+    VerdictLimits limits{};
 
     Execution execution{};
     /// Called with the name of each stage; returning false ends that stage with the best so far, and the next one

@@ -8,8 +8,8 @@
 namespace springfit {
 
 /// Fills in the errors of every candidate on the held-out cases, fits first, and then on a sample of the training's.
-/// A candidate that fails on a held-out case is not tried on the rest, unless `options` asks for it, nor on the
-/// training's. Returns false where the callback ended it; what was not reached stays infinite.
+/// A case that a candidate fails in counts as 1. Returns false where the callback ended it; what was not reached stays
+/// infinite.
 template <int Dim>
 [[nodiscard]] bool score(std::vector<Candidate<Dim>>& candidates, const RecordedCases<Dim, double>& cases,
                          const CalibrateOptions& options = {});

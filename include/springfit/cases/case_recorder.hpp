@@ -16,6 +16,8 @@ public:
 
     virtual ~CaseRecorder() = default;
 
+    /// True where forces are linear in the displacement, however large: a model that is true at small strain alone.
+    [[nodiscard]] virtual bool is_linear() const { return false; }
     /// True where `linear_responses` and `record_statics` may be called.
     [[nodiscard]] virtual bool finds_equilibria() const = 0;
     /// True where `record` heeds the damping that it is told.

@@ -46,6 +46,8 @@ struct RecordedCases {
     CaseSet<Dim, Scalar> training;
     CaseSet<Dim, Scalar> held_out;
     Scalar stiffness_damping = 0; ///< beta of D = beta K, s, of the reference as far as it is known
+    Scalar strain = 0;            ///< that loads were scaled to; 0: not known
+    Scalar deformation = 0;       ///< that loads in time were scaled to at most, as a part of the size; 0: not known
     Scalar period = 0;            ///< of the slowest motion that the loads excite, s; 0: not known
     bool interrupted = false;     ///< not all that were asked for are there
     std::vector<Warning> warnings;

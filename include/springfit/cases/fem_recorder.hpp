@@ -50,6 +50,7 @@ public:
         : m_vertices(vertices), m_make_body(std::move(make_body)), m_between(std::move(between)),
           m_body{m_make_body(Scalar(0))} {}
 
+    [[nodiscard]] bool is_linear() const override { return m_body.body->kind().is_linear; }
     [[nodiscard]] bool finds_equilibria() const override { return true; }
     [[nodiscard]] bool takes_damping() const override { return true; }
     [[nodiscard]] Scalar stiffness_damping() const override { return 0; }

@@ -38,6 +38,12 @@ EdgeStrain<Scalar> summary(Index n_edges, const Strain& strain) {
     return result;
 }
 
+/// The strain by which loads are scaled: that of 95 % of the edges, or a quarter of the largest.
+template <std::floating_point Scalar>
+Scalar scaled_strain(const EdgeStrain<Scalar>& strain) {
+    return std::max(strain.percentile_95, strain.max / 4);
+}
+
 /// Difference of two columns along an edge.
 template <int Dim, std::floating_point Scalar>
 Vector<Dim, Scalar> along(const NodePairs& pairs, Index e, const Points<Dim, Scalar>& points) {
@@ -110,7 +116,7 @@ std::vector<Scalar> scale_to_strain(std::vector<Scenario<Dim, Scalar>>& scenario
             continue;
         }
         const EdgeStrain<Scalar> response = linear_edge_strain(pairs, rest, responses[c]);
-        const Scalar found = std::max(response.percentile_95, response.max / 4);
+        const Scalar found = detail::scaled_strain(response);
         const Scalar factor = strain / found;
         if (found > 0 && std::isfinite(factor)) {
             scale_loads(scenarios[c], factor);

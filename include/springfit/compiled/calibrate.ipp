@@ -11,9 +11,9 @@ SPRINGFIT_INSTANTIATION bool score(std::vector<Candidate<2>>&, const RecordedCas
                                    const CalibrateOptions&);
 SPRINGFIT_INSTANTIATION bool score(std::vector<Candidate<3>>&, const RecordedCases<3, double>&,
                                    const CalibrateOptions&);
-SPRINGFIT_INSTANTIATION Calibration<2> calibrate(const std::vector<NamedNetwork<2>>&, RecordedCases<2, double>,
+SPRINGFIT_INSTANTIATION Calibration<2> calibrate(const std::vector<NetworkVariant<2>>&, RecordedCases<2, double>,
                                                  const CalibrateOptions&);
-SPRINGFIT_INSTANTIATION Calibration<3> calibrate(const std::vector<NamedNetwork<3>>&, RecordedCases<3, double>,
+SPRINGFIT_INSTANTIATION Calibration<3> calibrate(const std::vector<NetworkVariant<3>>&, RecordedCases<3, double>,
                                                  const CalibrateOptions&);
 
 } // namespace springfit

@@ -18,6 +18,9 @@ enum class WarningCode {
     not_excited,             ///< values that no motion excites kept their prior
     negative_set_to_zero,    ///< springs of a closed form
     unlike_reference,        ///< the network that is returned moves unlike the reference
+    case_failed,             ///< the network that is returned cannot be simulated in a held-out case
+    nothing_learnt,          ///< the fit does not move like what it was fitted to
+    small_strain,            ///< the loads strain little, since the reference is linear
     incomplete_recording     ///< columns that a recording does not have were derived or taken as zero
 };
 
@@ -31,6 +34,9 @@ enum class WarningCode {
     case WarningCode::not_excited: return "not_excited";
     case WarningCode::negative_set_to_zero: return "negative_set_to_zero";
     case WarningCode::unlike_reference: return "unlike_reference";
+    case WarningCode::case_failed: return "case_failed";
+    case WarningCode::nothing_learnt: return "nothing_learnt";
+    case WarningCode::small_strain: return "small_strain";
     case WarningCode::incomplete_recording: return "incomplete_recording";
     }
     return "unknown";

@@ -29,8 +29,11 @@ template <int Dim>
     Json json{{"training_cases", names_of(cases.training)},
               {"held_out_cases", names_of(cases.held_out)},
               {"stiffness_damping", cases.stiffness_damping}};
-    if (cases.period > 0) {
-        json["period"] = cases.period;
+    for (const auto& [name, value] : {std::pair{"period", cases.period}, std::pair{"strain", cases.strain},
+                                      std::pair{"deformation", cases.deformation}}) {
+        if (value > 0) {
+            json[name] = value;
+        }
     }
     const auto& first = cases.held_out.motions.front();
     json["frames"] = first.n_frames();
@@ -111,6 +114,7 @@ template <int Dim>
 [[nodiscard]] Report report_of(const Calibration<Dim>& calibration, const CalibrationSource& source) {
     const Candidate<Dim>& best = calibration.best();
     Report report;
+    report.verdict = to_string(calibration.verdict);
     report.status = calibration.status;
     report.method = best.name;
     report.nodes = best.network.n_nodes();
@@ -157,7 +161,6 @@ template <int Dim>
         warnings.push_back(describe(warning));
     }
     report.detail = source.detail;
-    report.detail["verdict"] = to_string(calibration.verdict);
     report.detail["chosen_by"] = to_string(calibration.choice.rule);
     report.detail["fits"] = std::move(fits);
     report.detail["reference"] = detail::reference_of(calibration, source);

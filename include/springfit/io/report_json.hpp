@@ -24,6 +24,7 @@ struct MotionErrors {
 
 /// The contents of `report.json`. Field by field: docs/files.md.
 struct Report {
+    std::string verdict;        ///< what the returned model is worth
     Status status = Status::failed;
     std::string method; ///< of the model that was returned
     Index nodes = 0;
@@ -73,6 +74,7 @@ inline void make_finite(Json& value, const std::string& pointer, std::vector<std
     json["format"] = "springfit-report";
     json["version"] = 1;
     json["springfit"] = SPRINGFIT_VERSION_STRING;
+    json["verdict"] = report.verdict;
     json["status"] = to_string(report.status);
     json["method"] = report.method;
     json["nodes"] = report.nodes;

@@ -2,34 +2,20 @@
 #pragma once
 
 #include <atomic>
-#include <map>
-#include <memory>
 #include <mutex>
 
-#include <springfit/core/execution.hpp>
-#include <springfit/simulate/equilibrium.hpp>
-#include <springfit/simulate/simulate.hpp>
+#include <springfit/score/detail/case_simulator.hpp>
 
 namespace springfit {
 
 /// The error of motions beside their references.
 struct MotionError {
     /// sqrt( sum |x - x_ref|^2 / sum |x_ref - x_rest|^2 ) over the free nodes, frames and cases of the set: 0 is the
-    /// reference itself, 1 as bad as not moving at all; infinite where a case could not be simulated to its end.
+    /// reference itself, 1 as bad as not moving at all. A case that cannot be simulated to its end counts as 1.
     double error = 0;
     Status status = Status::converged; ///< of the first case that failed; without one, `interrupted` where it was
     std::vector<double> case_errors;   ///< the same of each case on its own
     std::vector<Status> case_statuses; ///< how the simulation of each case ended
-};
-
-template <std::floating_point Scalar>
-struct MotionErrorOptions {
-    SymplecticEulerOptions<Scalar> step{};
-    int max_iterations = 500; ///< Newton iterations of a static case, >= 1
-    /// Leave out what is not done once a case fails: the error is infinite either way. Those cases are `interrupted`,
-    /// the status of the whole is that of the case that failed.
-    bool stop_at_failure = false;
-    Execution execution{}; ///< cases are independent of each other
 };
 
 namespace detail {
@@ -48,12 +34,16 @@ struct SquaredDistances {
         }
     }
 
-    [[nodiscard]] double error() const {
-        if (!std::isfinite(from_reference)) {
-            return std::numeric_limits<double>::infinity();
+    /// As if the network had not moved.
+    template <int Dim, std::floating_point Scalar>
+    void set_failed(const Motion<Dim, Scalar>& reference, const FreeNodes& free) {
+        *this = {};
+        for (const auto& positions : reference.positions) {
+            add<Dim, Scalar>(reference.rest_positions, positions, reference.rest_positions, free);
         }
-        return from_reference > 0 ? std::sqrt(from_reference / of_reference) : 0.;
     }
+
+    [[nodiscard]] double error() const { return from_reference > 0 ? std::sqrt(from_reference / of_reference) : 0.; }
 };
 
 /// Free nodes of a reference, which must be of this size.
@@ -65,35 +55,6 @@ FreeNodes free_of(const Motion<Dim, Scalar>& reference, Index n_nodes) {
             text(reference.n_frames(), " frames of positions"), reference.positions.size());
     return FreeNodes(n_nodes, reference.clamped);
 }
-
-/// The stiffness that static cases with the same clamps share: each once, and the number of each case's.
-template <int Dim, std::floating_point Scalar>
-struct StiffnessByClamps {
-    std::vector<std::unique_ptr<ClampedStiffness<SpringNetwork<Dim, Scalar>>>> held;
-    std::vector<std::size_t> of_case; ///< of no meaning for a case that is not static
-
-    StiffnessByClamps(const SpringNetwork<Dim, Scalar>& network, const std::vector<Scenario<Dim, Scalar>>& scenarios,
-                      const std::vector<Motion<Dim, Scalar>>& references, const Execution& execution)
-        : of_case(scenarios.size(), 0) {
-        std::map<std::vector<int>, std::size_t> numbers;
-        std::vector<std::vector<int>> clamps;
-        for (std::size_t c = 0; c < scenarios.size(); ++c) {
-            if (references[c].n_frames() == 1) {
-                const auto [place, is_new] =
-                    numbers.try_emplace(clamped_nodes(scenarios[c], network.n_nodes()), numbers.size());
-                if (is_new) {
-                    clamps.push_back(place->first);
-                }
-                of_case[c] = place->second;
-            }
-        }
-        held.resize(clamps.size());
-        execution.for_chunks(static_cast<Index>(clamps.size()), 1, [&](Index, Index begin, Index) {
-            const auto h = static_cast<std::size_t>(begin);
-            held[h] = std::make_unique<ClampedStiffness<SpringNetwork<Dim, Scalar>>>(network, clamps[h]);
-        });
-    }
-};
 
 inline MotionError total_error(const std::vector<SquaredDistances>& sums, std::vector<Status>&& statuses) {
     MotionError result;
@@ -115,7 +76,7 @@ inline MotionError total_error(const std::vector<SquaredDistances>& sums, std::v
 } // namespace detail
 
 /// Error of motions against references of the same frames, `motions[c]` against `references[c]`. A motion that is cut
-/// short makes the error infinite, `diverged`. Throws InvalidArgument for other numbers of cases or nodes. O(nodes x
+/// short counts as 1, `diverged`. Throws InvalidArgument for other numbers of cases or nodes. O(nodes x
 /// frames).
 template <int Dim, std::floating_point Scalar>
 [[nodiscard]] MotionError motion_error(const std::vector<Motion<Dim, Scalar>>& motions,
@@ -129,7 +90,7 @@ template <int Dim, std::floating_point Scalar>
         for (std::size_t t = 0; t < references[c].positions.size(); ++t) {
             if (t >= motions[c].positions.size()) {
                 statuses[c] = Status::diverged;
-                sums[c].from_reference = std::numeric_limits<double>::infinity();
+                sums[c].set_failed(references[c], free);
                 break;
             }
             sums[c].template add<Dim, Scalar>(motions[c].positions[t], references[c].positions[t],
@@ -139,14 +100,17 @@ template <int Dim, std::floating_point Scalar>
     return detail::total_error(sums, std::move(statuses));
 }
 
-/// Error of a network on a set of cases: it is simulated under each scenario at the frame times of its reference
-/// (`simulate`); a reference of a single frame is a static equilibrium and is compared with the network's own under the
-/// clamps of the scenario, found from the reference's positions or, where that fails, from the scenario's start.
+/// Error of a network on a set of cases: it is simulated under each scenario at the frame times of its reference; a
+/// reference of a single frame is a static equilibrium and is compared with the network's own under the clamps of the
+/// scenario.
 ///
-/// The sums run over the nodes that are not clamped in the reference. A case that diverges, takes too many sub-steps or
-/// finds no equilibrium makes the error infinite, and the status says why: a network is not scored on the part of a
-/// motion that it survives. Interrupted, the error is that of the frames compared so far. Throws InvalidArgument for
-/// scenarios, references and network that do not fit together. O(springs x sub-steps), no frame is kept.
+/// The sums run over the nodes that are not clamped in the reference. An equilibrium is looked for from the reference's
+/// positions, then from the scenario's start, then in load steps. A motion in time is stepped explicitly (symplectic
+/// Euler); where the stable step is so short that this would take long, or where it diverges, implicitly (implicit Euler
+/// of two step lengths, extrapolated). A case that fails in all of these counts as 1, and its status says why. So does a
+/// motion that stops half way: a network is not scored on the part that it survives. Interrupted, the error is that of
+/// the frames compared so far. Throws InvalidArgument for scenarios, references and network that do not fit together.
+/// O(springs x sub-steps), no frame is kept.
 template <int Dim, std::floating_point Scalar>
 [[nodiscard]] MotionError
 motion_error(const SpringNetwork<Dim, Scalar>& network, const std::vector<Scenario<Dim, Scalar>>& scenarios,
@@ -155,6 +119,8 @@ motion_error(const SpringNetwork<Dim, Scalar>& network, const std::vector<Scenar
     require(scenarios.size() == references.size(), "scenarios", text(references.size(), ", one per reference"),
             scenarios.size());
     require(options.max_iterations >= 1, "max_iterations", "at least one iteration", options.max_iterations);
+    require(options.implicit_steps_per_frame >= 1, "implicit_steps_per_frame", "at least one step",
+            options.implicit_steps_per_frame);
     std::vector<FreeNodes> free;
     double n_frames = 0;
     for (std::size_t c = 0; c < references.size(); ++c) {
@@ -163,49 +129,38 @@ motion_error(const SpringNetwork<Dim, Scalar>& network, const std::vector<Scenar
         detail::check_frame_times(references[c].times);
         n_frames += static_cast<double>(references[c].n_frames());
     }
-    const SymplecticEuler<Dim, Scalar> prototype(network, options.step);
-    const detail::StiffnessByClamps<Dim, Scalar> statics_of(network, scenarios, references, options.execution);
+    const detail::CaseSimulator<Dim, Scalar> simulator(network, scenarios, references, options);
     std::vector<detail::SquaredDistances> sums(references.size());
     std::vector<Status> statuses(references.size(), Status::interrupted);
     std::mutex reporting;
     double n_done = 0;
     std::atomic<bool> stopped = false;
-    const auto frame_done = [&] {
+    const auto add_done = [&](double frames) {
         const std::scoped_lock lock(reporting);
-        n_done += 1;
+        n_done += frames;
         stopped = stopped || !go_on(progress, "score", n_done / n_frames);
         return !stopped;
     };
     const auto score_case = [&](std::size_t c) {
         const auto& reference = references[c];
+        double compared = 0; // frames, in the present try
         const auto compare = [&](std::size_t frame, const Points<Dim, Scalar>& positions) {
+            if (frame == 0) { // the first try, or another
+                sums[c] = {};
+                const bool go_on = add_done(-compared);
+                compared = 0;
+                if (!go_on) {
+                    return false;
+                }
+            }
             sums[c].template add<Dim, Scalar>(positions, reference.positions[frame], reference.rest_positions, free[c]);
-            return frame_done();
+            compared += 1;
+            return add_done(1);
         };
-        if (reference.n_frames() == 1) {
-            EquilibriumOptions<Dim, Scalar> statics;
-            statics.time = reference.times.front();
-            statics.max_iterations = options.max_iterations;
-            statics.start = reference.positions.front();
-            const auto& springs = *statics_of.held[statics_of.of_case[c]];
-            auto rest = detail::equilibrium(springs, scenarios[c], statics, false);
-            if (rest.status != Status::converged) {
-                statics.start.resize(Dim, 0);
-                rest = detail::equilibrium(springs, scenarios[c], statics, false);
-            }
-            statuses[c] = rest.status;
-            if (rest.status == Status::converged && !compare(0, rest.positions)) {
-                statuses[c] = Status::interrupted;
-            }
-        } else {
-            auto stepper = prototype;
-            statuses[c] = detail::for_frames<Dim, Scalar>(
-                stepper, scenarios[c], reference.times, options.step.max_substeps,
-                [&](std::size_t frame, const State<Dim, Scalar>& state) { return compare(frame, state.positions); });
-        }
+        statuses[c] = simulator.run(c, compare);
         if (statuses[c] != Status::converged && statuses[c] != Status::interrupted) {
-            sums[c].from_reference = std::numeric_limits<double>::infinity();
-            stopped = stopped || options.stop_at_failure;
+            sums[c].set_failed(reference, free[c]);
+            (void)add_done(static_cast<double>(reference.n_frames()) - compared);
         }
     };
     options.execution.for_chunks(static_cast<Index>(references.size()), 1, [&](Index, Index begin, Index end) {

@@ -1,42 +1,136 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <string>
+#include <string_view>
+
 #include <springfit/calibrate/calibrate.hpp>
 
 namespace springfit {
 
+namespace detail {
+
+/// Error on the training cases above which a fit has learnt nothing; 1 is that of not moving.
+inline constexpr double nothing_learnt = 0.9;
+
+/// Iterations of matching for a variant that is not the last: most of what there is to gain comes in the first.
+inline constexpr int iterations_of_a_try = 12;
+
+/// Names the held-out cases that the returned network fails in.
 template <int Dim>
-Calibration<Dim> calibrate(const std::vector<NamedNetwork<Dim>>& given, RecordedCases<Dim, double> cases,
+void warn_of_failures(const Candidate<Dim>& best, const RecordedCases<Dim, double>& cases,
+                      std::vector<Warning>& warnings) {
+    const auto& scores = best.held_out;
+    for (std::size_t s = 0; s < scores.cases.size(); ++s) {
+        if (scores.statuses[s] == Status::converged || scores.statuses[s] == Status::interrupted) {
+            continue;
+        }
+        const auto& motion = cases.held_out.motions[scores.cases[s]];
+        warnings.push_back({.code = WarningCode::case_failed,
+                            .about = motion.name,
+                            .message = text("the returned network ",
+                                            motion.n_frames() == 1 ? "finds no equilibrium" : "cannot be stepped",
+                                            " under ", motion.name, " (", to_string(scores.statuses[s]),
+                                            "): that case counts as an error of 1"),
+                            .advice = {},
+                            .values = {}});
+    }
+}
+
+/// Says what is bad where the verdict is, and what this input leaves to try.
+template <int Dim>
+void warn_of_error(Calibration<Dim>& result, const RecordedCases<Dim, double>& cases, const CalibrateOptions& options) {
+    const Candidate<Dim>& best = result.best();
+    const bool is_fitted = best.acceleration.has_value() || best.trajectory.has_value();
+    if (is_fitted && best.training.is_scored() && best.training.error > nothing_learnt) {
+        result.verdict = Verdict::unusable;
+        result.warnings.push_back({.code = WarningCode::nothing_learnt,
+                                   .about = best.name,
+                                   .message = text("nothing was learnt: the error on the training cases is ",
+                                                   best.training.error, ", as of a network that does not move"),
+                                   .advice = "the forces that moved the body must be in the recording (gravity is one), "
+                                             "and its unit of time be the second",
+                                   .values = {{"training_error", best.training.error}}});
+    }
+    if (is_usable(result.verdict)) {
+        return;
+    }
+    const auto worst = std::max_element(result.parts.begin(), result.parts.end(),
+                                        [](const auto& a, const auto& b) { return a.error < b.error; });
+    std::string advice;
+    const auto add = [&](std::string_view one) { advice += (advice.empty() ? "" : ", ") + std::string(one); };
+    if (best.network.n_cells() == 0) {
+        add("cells that hold their volume");
+    }
+    if (cases.period > 0) { // the loads were made here
+        add("a smaller strain");
+        add("more nodes");
+    } else {
+        add("more recorded cases of other kinds");
+    }
+    result.warnings.push_back(
+        {.code = WarningCode::unlike_reference,
+         .about = best.name,
+         .message = text("the returned network moves unlike the reference (held-out error ", best.held_out.error,
+                         worst == result.parts.end() ? std::string()
+                                                     : text("; worst in ", worst->part, ": ", worst->error),
+                         ")"),
+         .advice = advice + " may help",
+         .values = {{"held_out_error", best.held_out.error}, {"limit", options.limits.poor}}});
+}
+
+/// Makes and scores the candidates of a variant. Returns false where the callback ended it.
+template <int Dim>
+bool add_candidates(const NetworkVariant<Dim>& variant, const RecordedCases<Dim, double>& cases,
+                    const CalibrateOptions& options, Calibration<Dim>& result) {
+    const Stopwatch fitting;
+    auto made = make_candidates(variant.given, cases, options);
+    result.warnings.insert(result.warnings.end(), made.warnings.begin(), made.warnings.end());
+    result.seconds[0].second += fitting.seconds();
+    const Stopwatch scoring;
+    const bool all_scored = score(made.all, cases, options);
+    result.seconds[1].second += scoring.seconds();
+    for (auto& candidate : made.all) {
+        if (!variant.parts.empty()) {
+            candidate.name += " (" + variant.parts + ")";
+        }
+        result.candidates.push_back(std::move(candidate));
+    }
+    return all_scored && !made.interrupted;
+}
+
+} // namespace detail
+
+template <int Dim>
+Calibration<Dim> calibrate(const std::vector<NetworkVariant<Dim>>& variants, RecordedCases<Dim, double> cases,
                            const CalibrateOptions& options) {
+    require(!variants.empty(), "variants", "a network to start from", "none");
     Calibration<Dim> result;
     result.warnings = cases.warnings;
-    const Stopwatch fitting;
-    auto made = make_candidates(given, cases, options);
-    result.candidates = std::move(made.all);
-    result.warnings.insert(result.warnings.end(), made.warnings.begin(), made.warnings.end());
-    result.seconds.emplace_back("fit", fitting.seconds());
-
-    const Stopwatch scoring;
-    const bool all_scored = score(result.candidates, cases, options);
-    result.seconds.emplace_back("score", scoring.seconds());
-    result.choice = choose(result.candidates, options);
-
-    const Candidate<Dim>& best = result.best();
-    const auto remarks = warnings_on(result.candidates);
-    result.warnings.insert(result.warnings.end(), remarks.begin(), remarks.end());
-    const bool unfinished = cases.interrupted || made.interrupted || !all_scored;
-    result.verdict = unfinished ? Verdict::unfinished : verdict_on(best.held_out.error, options);
-    result.status = unfinished ? Status::interrupted : best.status();
-    if (result.verdict == Verdict::poor || result.verdict == Verdict::unusable) {
-        result.warnings.push_back(
-            {.code = WarningCode::unlike_reference,
-             .about = best.name,
-             .message =
-                 text("the returned network moves unlike the reference (held-out error ", best.held_out.error, ")"),
-             .advice = "cells that hold their volume, smaller strain or deformation, or more nodes may help",
-             .values = {{"held_out_error", best.held_out.error}}});
+    result.seconds = {{"fit", 0.}, {"score", 0.}};
+    bool unfinished = cases.interrupted;
+    for (std::size_t v = 0; v < variants.size(); ++v) {
+        auto how = options;
+        if (v + 1 < variants.size()) {
+            how.matching_iterations = std::min(how.matching_iterations, detail::iterations_of_a_try);
+        }
+        unfinished = !detail::add_candidates(variants[v], cases, how, result) || unfinished;
+        result.choice = choose(result.candidates, options);
+        if (unfinished || verdict_on(result.best().held_out, options.limits) == Verdict::good) {
+            break;
+        }
     }
+    const Candidate<Dim>& best = result.best();
+    const auto remarks = warnings_on(best);
+    result.warnings.insert(result.warnings.end(), remarks.begin(), remarks.end());
     result.parts = held_out_parts(best, cases.held_out);
+    result.verdict = unfinished ? Verdict::unfinished : verdict_on(best.held_out, options.limits);
+    result.status = unfinished ? Status::interrupted : best.status();
+    if (!unfinished) {
+        detail::warn_of_failures(best, cases, result.warnings);
+        detail::warn_of_error(result, cases, options);
+    }
     result.stable_step = stable_step(best.network, cases.held_out.motions.front().clamped);
     result.cases = std::move(cases);
     return result;

@@ -93,7 +93,7 @@ private:
             const double error =
                 motion_error(
                     m_result.all[c].network, scenarios, statics.motions, {},
-                    {.max_iterations = scoring_iterations, .stop_at_failure = true, .execution = m_options.execution})
+                    {.max_iterations = scoring_iterations, .execution = m_options.execution})
                     .error;
             if (error < least) {
                 least = error;

@@ -27,9 +27,7 @@ bool score(std::vector<Candidate<Dim>>& candidates, const RecordedCases<Dim, dou
     const auto scores_of = [&](const SpringNetwork<Dim, double>& network, const CaseSet<Dim, double>& set,
                                const std::vector<std::size_t>& numbers) {
         auto found = motion_error(network, set.scenarios(), set.motions, stage.part(part++),
-                                  {.max_iterations = detail::scoring_iterations,
-                                   .stop_at_failure = !options.score_past_failures,
-                                   .execution = options.execution});
+                                  {.max_iterations = detail::scoring_iterations, .execution = options.execution});
         if (stage.stopped()) {
             found.error = std::numeric_limits<double>::infinity();
         }
@@ -40,9 +38,7 @@ bool score(std::vector<Candidate<Dim>>& candidates, const RecordedCases<Dim, dou
     }
     for (auto candidate = candidates.rbegin(); candidate != candidates.rend() && !sampled.empty() && !stage.stopped();
          ++candidate) {
-        if (std::isfinite(candidate->held_out.error)) {
-            candidate->training = scores_of(candidate->network, sample, sampled);
-        }
+        candidate->training = scores_of(candidate->network, sample, sampled);
     }
     return !stage.stopped();
 }

@@ -14,8 +14,9 @@ void validate(const RecordCasesOptions<Dim, Scalar>& options) {
     require(options.training_motions >= 1, "training_motions", "at least one", options.training_motions);
     require(options.held_out_motions >= 1, "held_out_motions", "at least one", options.held_out_motions);
     require(options.frames >= 4, "frames", "at least 4", options.frames);
-    require(options.deformation > 0 && options.deformation < 1, "deformation", "a part of the body's size in (0, 1)",
-            options.deformation);
+    const auto is_part = [](const std::optional<Scalar>& value) { return !value || (*value > 0 && *value < 1); };
+    require(is_part(options.deformation), "deformation", "a part of the body's size in (0, 1)",
+            options.deformation.value_or(0));
     require(!options.damping_ratio || (*options.damping_ratio >= 0 && *options.damping_ratio < 1), "damping_ratio",
             "a part of critical in [0, 1)", options.damping_ratio.value_or(0));
     require(options.stiffness_damping >= 0 && std::isfinite(options.stiffness_damping), "stiffness_damping",
@@ -25,7 +26,7 @@ void validate(const RecordCasesOptions<Dim, Scalar>& options) {
     require(options.held_out_loads >= 0, "held_out_loads", "a number not below 0", options.held_out_loads);
     require(options.held_out_kinds >= 0, "held_out_kinds", "a number not below 0", options.held_out_kinds);
     require(options.clamp_sets >= 1, "clamp_sets", "at least one", options.clamp_sets);
-    require(options.strain > 0 && options.strain < 1, "strain", "a strain in (0, 1)", options.strain);
+    require(is_part(options.strain), "strain", "a strain in (0, 1)", options.strain.value_or(0));
     require(options.small_strain > 0 && options.small_strain <= 1, "small_strain", "a part in (0, 1]",
             options.small_strain);
 }
@@ -49,6 +50,7 @@ public:
     }
 
     [[nodiscard]] RecordedCases<Dim, Scalar> record() {
+        choose_sizes();
         record_motions();
         if (m_reference.finds_equilibria() && m_options.training_equilibria > 0 && !m_result.interrupted) {
             record_equilibria();
@@ -61,6 +63,29 @@ public:
     }
 
 private:
+    void choose_sizes() {
+        const bool is_linear = m_reference.is_linear();
+        m_result.strain = m_options.strain.value_or(is_linear ? Scalar(0.001) : Scalar(0.05));
+        m_result.deformation = m_options.deformation.value_or(is_linear ? Scalar(0.005) : Scalar(0.05));
+        if (is_linear && !m_options.strain) {
+            m_result.warnings.push_back(
+                {.code = WarningCode::small_strain,
+                 .about = "reference",
+                 .message = text("the reference is linear, which is true at small strain alone: its loads strain by ",
+                                 m_result.strain),
+                 .advice = "a material for large strain (neo-Hookean) shows what the springs do there",
+                 .values = {{"strain", static_cast<double>(m_result.strain)}}});
+        }
+    }
+
+    /// The largest factor that a load may have by the strain of its linear response u.
+    [[nodiscard]] Scalar factor_of_strain(const Points<Dim, Scalar>& u) const {
+        if (m_options.deformation || m_specimen.edges.cols() == 0) {
+            return std::numeric_limits<Scalar>::infinity();
+        }
+        return m_result.strain / scaled_strain(linear_edge_strain(m_specimen.edges, m_specimen.rest_positions, u));
+    }
+
     [[nodiscard]] std::vector<Points<Dim, Scalar>> responses(const Scenarios& scenarios) const {
         if (m_options.responses) {
             return m_options.responses(scenarios);
@@ -71,7 +96,7 @@ private:
         return m_reference.linear_responses(scenarios, {.execution = m_options.execution});
     }
 
-    /// Scales the loads of motions to one largest displacement; returns the lowest frequency, rad/s.
+    /// Scales the loads of motions; returns the lowest frequency, rad/s.
     [[nodiscard]] Scalar scale_to_deformation(Scenarios& scenarios) const {
         const auto& rest = m_specimen.rest_positions;
         const Scalar size = (rest.rowwise().maxCoeff() - rest.rowwise().minCoeff()).norm();
@@ -87,7 +112,8 @@ private:
             const auto forces = external_forces<Dim, Scalar>(scenarios[c], m_specimen.masses, 0);
             const Scalar work = forces.cwiseProduct(u).sum();
             const Scalar inertia = (u.colwise().squaredNorm() * m_specimen.masses)(0);
-            scale_loads(scenarios[c], m_options.deformation * size / u.colwise().norm().maxCoeff());
+            const Scalar factor = m_result.deformation * size / u.colwise().norm().maxCoeff();
+            scale_loads(scenarios[c], std::min(factor, factor_of_strain(u)));
             slowest = std::min(slowest, std::sqrt(work / inertia));
         }
         require(slowest > 0 && std::isfinite(slowest), "responses", "displacements along the loads", slowest);
@@ -157,9 +183,9 @@ private:
             part.push_back(std::move(load_case));
         }
         Stage stage(m_options.progress, "record equilibria", 3);
-        record_equilibria(std::move(judging), m_options.strain, stage.part(0));
-        record_equilibria(std::move(large), m_options.strain, stage.part(1));
-        record_equilibria(std::move(small), m_options.strain * m_options.small_strain, stage.part(2));
+        record_equilibria(std::move(judging), m_result.strain, stage.part(0));
+        record_equilibria(std::move(large), m_result.strain, stage.part(1));
+        record_equilibria(std::move(small), m_result.strain * m_options.small_strain, stage.part(2));
     }
 
     void record_equilibria(Cases cases, Scalar strain, const ProgressCallback& progress) {
