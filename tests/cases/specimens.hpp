@@ -4,6 +4,7 @@
 #include <numeric>
 #include <random>
 
+#include <springfit/cases/clamp_sets.hpp>
 #include <springfit/cases/specimen.hpp>
 #include <springfit/closed_form/van_gelder.hpp>
 #include <springfit/mesh/structured.hpp>

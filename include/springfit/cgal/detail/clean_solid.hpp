@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <springfit/cgal/detail/pieces.hpp>
+#include <springfit/mesh/simplex.hpp>
 
 namespace springfit::cgal::detail {
 
