@@ -44,5 +44,5 @@ int main(int argc, char** argv) {
     if (argc > 2) {
         io::write_model(std::filesystem::path(argv[2]) / "model.json", io::model_of(result, {.input = argv[1]}));
     }
-    return result.verdict == Verdict::good ? 0 : 1;
+    return is_usable(result.verdict) ? 0 : 1;
 }

@@ -40,7 +40,6 @@ CalibrateOptions fit_options(bool acceleration, const Settings& settings) {
     how.matching_tolerance = 2e-3;
     how.matching_seconds = std::numeric_limits<double>::infinity();
     how.scored_training_cases = 0;
-    how.score_past_failures = true;
     how.execution = settings.execution;
     how.progress = until_interrupted();
     return how;

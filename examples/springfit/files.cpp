@@ -79,17 +79,19 @@ std::string error_text(const CaseScores& scores) {
 
 template <int Dim>
 void print_table(const Calibration<Dim>& calibration) {
-    std::printf("\n%-16s %10s %10s %10s %12s %10s\n", "method", "held-out", "failed", "training", "stiffness", "seconds");
+    std::printf("\n%-16s %10s %10s %10s %12s %10s\n", "method", "held-out", "failed", "training", "stiffness",
+                "seconds");
     for (const auto& candidate : calibration.candidates) {
         const CaseScores& scores = candidate.held_out;
         std::printf("%-16s %10s %10s %10s %12.3f %10.2f%s\n", candidate.name.c_str(), error_text(scores).c_str(),
-                    text(scores.n_failed(), " of ", scores.cases.size()).c_str(), error_text(candidate.training).c_str(),
-                    candidate.relative_stiffness, candidate.seconds,
+                    text(scores.n_failed(), " of ", scores.cases.size()).c_str(),
+                    error_text(candidate.training).c_str(), candidate.relative_stiffness, candidate.seconds,
                     &candidate == &calibration.best() ? "   <- returned" : "");
     }
-    std::printf("(errors: |x - x_ref| / |x_ref - x_rest| over free nodes, frames and cases, where a case that fails counts "
-                "as 1; failed:\nheld-out cases that the network cannot be simulated in; stiffness: energy in the "
-                "reference's motion beside the first\nclosed form)\n\n");
+    std::printf(
+        "(errors: |x - x_ref| / |x_ref - x_rest| over free nodes, frames and cases, where a case that fails counts "
+        "as 1; failed:\nheld-out cases that the network cannot be simulated in; stiffness: energy in the "
+        "reference's motion beside the first\nclosed form)\n\n");
     for (const auto& [part, error] : calibration.parts) {
         std::printf("%s, held out: %-28s %.4f\n", calibration.best().name.c_str(), std::string(part).c_str(), error);
     }

@@ -81,12 +81,14 @@ void declare_fit(CLI::App& app, program::FitOptions& options) {
     add_optional(app, "--static-cases", options.static_cases,
                  "equilibria, under three clamps, that matching of motion learns from (default 60)")
         ->group(cases);
-    add_optional(app, "--strain", options.strain,
-                 "strain that the loads of every second one, and of those that judge, aim at (default 0.05; linear: 0.001)")
+    add_optional(
+        app, "--strain", options.strain,
+        "strain that the loads of every second one, and of those that judge, aim at (default 0.05; linear: 0.001)")
         ->group(cases);
     add_optional(app, "--frames", options.frames, "frames of each recorded motion (default 32)")->group(cases);
     add_optional(app, "--deformation", options.deformation,
-                 "displacement the loads in time aim at, as a part of the body's size (default 0.05, less where the strain is above "
+                 "displacement the loads in time aim at, as a part of the body's size (default 0.05, less where the "
+                 "strain is above "
                  "that of --strain)")
         ->group(cases);
     app.add_option("--seed", options.seed, "seed of everything random")->capture_default_str()->group(cases);
@@ -107,9 +109,10 @@ void declare_fit(CLI::App& app, program::FitOptions& options) {
         ->capture_default_str()
         ->group(fit);
     add_optional(app, "--zeta", options.zeta, "zeta of --damping ratio (default 0.05)")->group(fit);
-    app.add_option("--parts", options.parts,
-                   "auto: springs along edges, with cells that hold their volume and the second ring where springs alone "
-                   "are not good; edges: springs along edges alone, for engines that know no others")
+    app.add_option(
+           "--parts", options.parts,
+           "auto: springs along edges, with cells that hold their volume and the second ring where springs alone "
+           "are not good; edges: springs along edges alone, for engines that know no others")
         ->check(CLI::IsMember({"auto", "edges"}))
         ->capture_default_str()
         ->group(fit);

@@ -241,20 +241,20 @@ TEST_CASE("errors by role, and of all cases where one fails") {
     }
     CHECK(std::isnan(error_with(CaseRole::unseen_clamp, even_one.held_out, cases.held_out)));
 
-    // A load that no network bears makes its role infinite, and no other.
+    // A load that no network bears counts as 1, and all other cases are scored all the same.
     auto torn = cases;
     std::size_t broken = 0;
     while (torn.held_out.cases[broken].role != CaseRole::unseen_kind) {
         ++broken;
     }
     scale_loads(torn.held_out.cases[broken].scenario, 1e300);
-    for (const bool past : {false, true}) {
-        options.score_past_failures = past;
-        CHECK(score(candidates, torn, options));
-        CHECK(std::isinf(candidates.front().held_out.error));
-        CHECK(std::isinf(error_with(CaseRole::unseen_kind, candidates.front().held_out, torn.held_out)));
-        CHECK((candidates.front().held_out.statuses.back() == Status::converged) == past);
-    }
+    CHECK(score(candidates, torn, options));
+    const CaseScores& scores = candidates.front().held_out;
+    CHECK(scores.n_failed() == 1);
+    CHECK(scores.errors[broken] == 1);
+    CHECK(scores.error < 1);
+    CHECK(scores.statuses.back() == Status::converged);
+    CHECK(verdict_on(scores) != Verdict::good);
     const double others = error_of(CaseRole::unseen_load);
     CHECK(test::relative(error_with(CaseRole::unseen_load, candidates.front().held_out, torn.held_out), others,
                          others) < 1e-12);

@@ -25,6 +25,17 @@ def run(*arguments, code=0):
     return result
 
 
+def fit(*arguments):
+    """A fit; the exit code is that of its verdict."""
+    result = subprocess.run([PROGRAM, "fit"] + [str(a) for a in arguments], capture_output=True, text=True)
+    report = json.load(open(arguments[-1] / "report.json"))
+    assert report["verdict"] in ("good", "fair", "poor", "unusable"), report["verdict"]
+    usable = report["verdict"] in ("good", "fair")
+    assert result.returncode == (0 if usable else 3), (result.returncode, result.stdout, result.stderr)
+    assert result.stdout.splitlines()[-1].startswith(f"verdict: {report['verdict']} "), result.stdout
+    return result
+
+
 def check_model(model, nodes, springs, dimension):
     assert (model["format"], model["version"], model["units"]) == ("springfit-model", 1, "SI")
     assert model["dimension"] == dimension and model["damping_law"] == "axial"
@@ -56,7 +67,7 @@ def check_motion(out, nodes, springs, dimension, fitted_only=False):
 # A cube of soft rubber, by FEM.
 bodies.write_off(folder / "cube.off", bodies.CUBE_POINTS, bodies.CUBE_FACES)
 out = folder / "cube"
-run("fit", folder / "cube.off", "--young", 1e4, "--poisson", 0.3, "--density", 1000, "--nodes", 60, "--training-cases",
+fit(folder / "cube.off", "--young", 1e4, "--poisson", 0.3, "--density", 1000, "--nodes", 60, "--training-cases",
     2, "--held-out-cases", 2, "--frames", 12, "--seed", 3, "--out", out)
 assert sorted(p.name for p in out.iterdir()) == ["model.json", "motion.h5", "motion.xdmf", "report.json"]
 model = json.load(open(out / "model.json"))
@@ -66,7 +77,9 @@ check_motion(out, report["nodes"], report["springs"], 3)
 assert abs(sum(model["nodes"]["mass"]) - 1000) < 1e-6
 baselines = report["held_out"]["baselines"]
 assert {"van_gelder", "dominant_term", "exact"} <= set(baselines)
-assert report["held_out"]["error"] == min(e for e in baselines.values() if e is not None)
+assert report["held_out"]["error"] <= 1.2 * min(baselines.values())  # of near equals the one with fewer springs
+failures = [fit.get("failed_cases", {}) for fit in report["detail"]["fits"].values()]
+assert all(set(f) <= set(report["detail"]["reference"]["held_out_cases"]) for f in failures), failures
 far_off = [w for w in report["warnings"] if "moves unlike the reference" in w]
 assert len(far_off) == (report["held_out"]["error"] >= 0.25), report["warnings"]
 assert report["method"] in baselines and set(report["training"]["baselines"]) == set(baselines)
@@ -74,19 +87,19 @@ assert report["detail"]["seed"] == 3
 
 # The same seed gives the same model, on any number of threads.
 again = folder / "again"
-run("fit", folder / "cube.off", "--young", 1e4, "--poisson", 0.3, "--density", 1000, "--nodes", 60, "--training-cases",
+fit(folder / "cube.off", "--young", 1e4, "--poisson", 0.3, "--density", 1000, "--nodes", 60, "--training-cases",
     2, "--held-out-cases", 2, "--frames", 12, "--seed", 3, "--threads", 1, "--out", again)
 assert json.load(open(again / "model.json")) == model
 
 # One method alone is returned even where another would be better.
-run("fit", folder / "cube.off", "--young", 1e4, "--poisson", 0.3, "--density", 1000, "--nodes", 60, "--training-cases",
+fit(folder / "cube.off", "--young", 1e4, "--poisson", 0.3, "--density", 1000, "--nodes", 60, "--training-cases",
     1, "--held-out-cases", 1, "--frames", 8, "--method", "dominant-term", "--out", again)
 assert json.load(open(again / "report.json"))["method"] == "dominant_term"
 
 # What a run with a finer reference left in the folder does not stay beside the files of one without.
 for name in ("surface.h5", "surface.xdmf"):
     (again / name).write_text("of another network")
-run("fit", folder / "cube.off", "--young", 1e4, "--poisson", 0.3, "--density", 1000, "--nodes", 60, "--training-cases",
+fit(folder / "cube.off", "--young", 1e4, "--poisson", 0.3, "--density", 1000, "--nodes", 60, "--training-cases",
     1, "--held-out-cases", 1, "--frames", 8, "--method", "closed-form", "--out", again)
 assert sorted(p.name for p in again.iterdir()) == ["model.json", "motion.h5", "motion.xdmf", "report.json"]
 
@@ -128,7 +141,7 @@ def check_surface(out, model, fitted_only=False):
 (folder / "sheet.wkt").write_text("POLYGON((0 0, 3 0, 3 1, 0 1, 0 0))\n")
 for name, dimension, total, nodes in (("cube.off", 3, 1000, 40), ("sheet.wkt", 2, 3000, 40)):
     out = folder / ("coarse-" + name)
-    run("fit", folder / name, "--young", 1e4, "--poisson", 0.3, "--density", 1000, "--nodes", nodes,
+    fit(folder / name, "--young", 1e4, "--poisson", 0.3, "--density", 1000, "--nodes", nodes,
         "--reference-nodes", 6 * nodes, "--training-cases", 1, "--held-out-cases", 1, "--static-cases", 6, "--strain", 0.02,
         "--frames", 10, "--clamp", "x-min:0.1", "--method", "trajectory", "--out", out)
     assert sorted(p.name for p in out.iterdir()) == ["model.json", "motion.h5", "motion.xdmf", "report.json",
@@ -197,7 +210,7 @@ with h5py.File(folder / "strip.h5", "w") as file:
         file[f"/reference/{name}"] = numpy.array(values)
 for method, name in (("exact", "exact"), ("dominant-term", "dominant_term")):
     out = folder / method
-    run("fit", folder / "strip.h5", "--young", 1e3, "--poisson", 0.3, "--density", 10, "--damping", "fitted", "--method",
+    fit(folder / "strip.h5", "--young", 1e3, "--poisson", 0.3, "--density", 10, "--damping", "fitted", "--method",
         method, "--out", out)
     model = json.load(open(out / "model.json"))
     report = json.load(open(out / "report.json"))

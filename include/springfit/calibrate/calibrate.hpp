@@ -27,11 +27,11 @@ struct Calibration {
     [[nodiscard]] const Candidate<Dim>& best() const { return candidates[choice.candidate]; }
 };
 
-/// A body's network with more or fewer parts than another: along the edges alone, with cells that hold their volume, with
-/// the second ring.
+/// A body's network with more or fewer parts than another: along the edges alone, with cells that hold their volume,
+/// with the second ring.
 template <int Dim>
 struct NetworkVariant {
-    std::string parts;                     ///< what it has, for names: "cells"; empty for the first
+    std::string parts;                      ///< what it has, for names: "cells"; empty for the first
     std::vector<NamedNetwork<Dim>> given{}; ///< networks with values to start from
 };
 
@@ -75,7 +75,7 @@ struct BodyOptions {
     double density = 0;   ///< rho, kg/m^3, > 0
     double thickness = 1; ///< h, m, > 0, of plane bodies
     std::vector<int>
-        clamped{};            ///< nodes of the mesh's corners that are held; empty: clamp sets are found (`clamp_sets`)
+        clamped{}; ///< nodes of the mesh's corners that are held; empty: clamp sets are found (`clamp_sets`)
     Parts parts = Parts::automatic; ///< `given` where `second_ring` or `volume` is
     bool second_ring = false;       ///< springs between opposite vertices of neighbouring simplices, too
     bool volume = false;            ///< cells that hold their volume, too; for nearly incompressible materials

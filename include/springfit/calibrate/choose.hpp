@@ -48,7 +48,8 @@ struct Choice {
 };
 
 /// The scored candidate with the least held-out error, or among those near to it (`CalibrateOptions::near_equal`) the
-/// one with the fewest springs and cells; only fits where a method was named. Throws InvalidArgument where there is none.
+/// one with the fewest springs and cells; only fits where a method was named. Throws InvalidArgument where there is
+/// none.
 template <int Dim>
 [[nodiscard]] Choice choose(const std::vector<Candidate<Dim>>& candidates, const CalibrateOptions& options = {}) {
     require(!candidates.empty(), "candidates", "at least one", "none");
@@ -77,43 +78,42 @@ template <int Dim>
 
 /// The verdict on a network by its errors on cases that no fit has seen.
 [[nodiscard]] inline Verdict verdict_on(const CaseScores& held_out, const VerdictLimits& limits = {}) {
-    return !(held_out.error < limits.unusable)                            ? Verdict::unusable
-           : !(held_out.error < limits.poor)                              ? Verdict::poor
-           : !(held_out.error < limits.fair) || held_out.n_failed() > 0   ? Verdict::fair
-                                                                          : Verdict::good;
+    return !(held_out.error < limits.unusable)                          ? Verdict::unusable
+           : !(held_out.error < limits.poor)                            ? Verdict::poor
+           : !(held_out.error < limits.fair) || held_out.n_failed() > 0 ? Verdict::fair
+                                                                        : Verdict::good;
 }
 
 /// Warnings about a candidate, for the user of its network.
 template <int Dim>
 [[nodiscard]] std::vector<Warning> warnings_on(const Candidate<Dim>& candidate) {
     std::vector<Warning> warnings;
-        if (candidate.acceleration && candidate.relative_stiffness < 0.9) {
-            warnings.push_back({.code = WarningCode::softer_than_closed_form,
-                                .about = candidate.name,
-                                .message = text(candidate.name, " came out softer than the closed form (",
-                                                candidate.relative_stiffness,
-                                                " of its stiffness): accelerations alone lose stiffness where springs "
-                                                "cannot represent the material"),
-                                .advice = {},
-                                .values = {{"relative_stiffness", candidate.relative_stiffness}}});
-        }
-        if (candidate.acceleration && !candidate.acceleration->not_identified.empty()) {
-            const std::size_t n = candidate.acceleration->not_identified.size();
-            warnings.push_back(
-                {.code = WarningCode::not_excited,
-                 .about = candidate.name,
-                 .message = text(candidate.name, ": ", n, " values that no motion excites kept their prior"),
-                 .advice = {},
-                 .values = {{"values", static_cast<double>(n)}}});
-        }
-        if (candidate.n_clamped > 0) {
-            warnings.push_back({.code = WarningCode::negative_set_to_zero,
-                                .about = candidate.name,
-                                .message = text(candidate.name, ": ", candidate.n_clamped,
-                                                " springs would be negative and were set to 0"),
-                                .advice = {},
-                                .values = {{"springs", static_cast<double>(candidate.n_clamped)}}});
-        }
+    if (candidate.acceleration && candidate.relative_stiffness < 0.9) {
+        warnings.push_back(
+            {.code = WarningCode::softer_than_closed_form,
+             .about = candidate.name,
+             .message = text(candidate.name, " came out softer than the closed form (", candidate.relative_stiffness,
+                             " of its stiffness): accelerations alone lose stiffness where springs "
+                             "cannot represent the material"),
+             .advice = {},
+             .values = {{"relative_stiffness", candidate.relative_stiffness}}});
+    }
+    if (candidate.acceleration && !candidate.acceleration->not_identified.empty()) {
+        const std::size_t n = candidate.acceleration->not_identified.size();
+        warnings.push_back({.code = WarningCode::not_excited,
+                            .about = candidate.name,
+                            .message = text(candidate.name, ": ", n, " values that no motion excites kept their prior"),
+                            .advice = {},
+                            .values = {{"values", static_cast<double>(n)}}});
+    }
+    if (candidate.n_clamped > 0) {
+        warnings.push_back(
+            {.code = WarningCode::negative_set_to_zero,
+             .about = candidate.name,
+             .message = text(candidate.name, ": ", candidate.n_clamped, " springs would be negative and were set to 0"),
+             .advice = {},
+             .values = {{"springs", static_cast<double>(candidate.n_clamped)}}});
+    }
     return warnings;
 }
 

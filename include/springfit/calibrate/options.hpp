@@ -65,9 +65,9 @@ struct CalibrateOptions {
     double matching_tolerance = 1e-3; ///< matching ends when iterations gain less than this part, > 0
     double matching_seconds = 300;    ///< of matching of motion at most, > 0, of wall clock
 
-    int scored_training_cases = 12;   ///< at most, evenly spread, >= 0: what a fit has seen says little
-    double near_equal = 1.2;          ///< of networks whose errors differ by less than this factor, the one with fewer
-                                      ///< springs and cells is returned, >= 1
+    int scored_training_cases = 12; ///< at most, evenly spread, >= 0: what a fit has seen says little
+    double near_equal = 1.2;        ///< of networks whose errors differ by less than this factor, the one with fewer
+                                    ///< springs and cells is returned, >= 1
     VerdictLimits limits{};
 
     Execution execution{};

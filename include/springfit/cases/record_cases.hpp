@@ -13,20 +13,20 @@ struct RecordCasesOptions {
     using Scenarios = std::vector<Scenario<Dim, Scalar>>;
 
     // Motions in time, under the specimen's own clamps: loaded in a ramp, then released.
-    int training_motions = 6;              ///< >= 1
-    int held_out_motions = 3;              ///< >= 1: a load of a trained kind, then kinds that training never shows
-    int frames = 32;                       ///< of each, >= 4
-    /// Largest displacement aimed at, as a part of the body's size, in (0, 1); none: 0.05 (of a linear reference 0.005),
-    /// or less where `strain` is reached before.
+    int training_motions = 6; ///< >= 1
+    int held_out_motions = 3; ///< >= 1: a load of a trained kind, then kinds that training never shows
+    int frames = 32;          ///< of each, >= 4
+    /// Largest displacement aimed at, as a part of the body's size, in (0, 1); none: 0.05 (of a linear reference
+    /// 0.005), or less where `strain` is reached before.
     std::optional<Scalar> deformation{};
     std::optional<Scalar> damping_ratio{}; ///< of the slowest motion, in [0, 1); heeded where damping can be set
     Scalar stiffness_damping = 0;          ///< else beta of D = beta K, s, >= 0
 
     // Equilibria, under several clamp sets, where the reference finds any.
-    int training_equilibria = 60;       ///< >= 0; with 0 there are none to judge by either
-    int held_out_loads = 6;             ///< of kinds and clamps that training has, >= 0
-    int held_out_kinds = 5;             ///< of kinds that training never shows, >= 0
-    int clamp_sets = 3;                 ///< the specimen's own first, >= 1
+    int training_equilibria = 60; ///< >= 0; with 0 there are none to judge by either
+    int held_out_loads = 6;       ///< of kinds and clamps that training has, >= 0
+    int held_out_kinds = 5;       ///< of kinds that training never shows, >= 0
+    int clamp_sets = 3;           ///< the specimen's own first, >= 1
     /// Strain of those that judge and of every second to learn from, in (0, 1); none: 0.05, and 0.001 of a linear
     /// reference, which is true at small strain alone.
     std::optional<Scalar> strain{};
@@ -47,10 +47,10 @@ struct RecordCasesOptions {
 /// Load cases of a specimen, recorded: motions in time and equilibria, to learn from and to judge by.
 ///
 /// Loads are scaled by the linear response to them: those of equilibria to one strain of the specimen's edges, those of
-/// motions to one largest displacement, or to the same strain where it comes first, as in thin or slender parts. (`record_motions` and `record_equilibria` do it for cases of your own.)
-/// Motions last 1.25 periods of the slowest response u to a load f, omega^2 = f . u / (u . M u) (Rayleigh's quotient);
-/// the ramp takes 0.3 of them, the release comes at 0.6. Cases that the reference does not come through are left out,
-/// with a warning.
+/// motions to one largest displacement, or to the same strain where it comes first, as in thin or slender parts.
+/// (`record_motions` and `record_equilibria` do it for cases of your own.) Motions last 1.25 periods of the slowest
+/// response u to a load f, omega^2 = f . u / (u . M u) (Rayleigh's quotient); the ramp takes 0.3 of them, the release
+/// comes at 0.6. Cases that the reference does not come through are left out, with a warning.
 ///
 /// Throws InvalidArgument for an option out of range, for a specimen of other nodes than the reference, for clamps that
 /// do not hold the body ("clamps"), and where no case to learn from or none to judge by came about ("reference"). Where

@@ -104,7 +104,9 @@ template <int Dim, std::floating_point Scalar, FiniteElementCell Cell>
     for (const auto& facet : facets) {
         detail::add_facet<typename detail::FacetCell<Cell>::type>(
             mesh.nodes, detail::facet_nodes(mesh, facet),
-            [&](const auto& j) -> Vector<Dim, double> { return traction.template cast<double>() * springfit::detail::measure(j); },
+            [&](const auto& j) -> Vector<Dim, double> {
+                return traction.template cast<double>() * springfit::detail::measure(j);
+            },
             forces);
     }
     return detail::nodal_load<Dim, Scalar>(forces, std::move(amplitude));

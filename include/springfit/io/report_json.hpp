@@ -24,7 +24,7 @@ struct MotionErrors {
 
 /// The contents of `report.json`. Field by field: docs/files.md.
 struct Report {
-    std::string verdict;        ///< what the returned model is worth
+    std::string verdict; ///< what the returned model is worth
     Status status = Status::failed;
     std::string method; ///< of the model that was returned
     Index nodes = 0;

@@ -27,14 +27,14 @@ void warn_of_failures(const Candidate<Dim>& best, const RecordedCases<Dim, doubl
             continue;
         }
         const auto& motion = cases.held_out.motions[scores.cases[s]];
-        warnings.push_back({.code = WarningCode::case_failed,
-                            .about = motion.name,
-                            .message = text("the returned network ",
-                                            motion.n_frames() == 1 ? "finds no equilibrium" : "cannot be stepped",
-                                            " under ", motion.name, " (", to_string(scores.statuses[s]),
-                                            "): that case counts as an error of 1"),
-                            .advice = {},
-                            .values = {}});
+        warnings.push_back(
+            {.code = WarningCode::case_failed,
+             .about = motion.name,
+             .message = text("the returned network ",
+                             motion.n_frames() == 1 ? "finds no equilibrium" : "cannot be stepped", " under ",
+                             motion.name, " (", to_string(scores.statuses[s]), "): that case counts as an error of 1"),
+             .advice = {},
+             .values = {}});
     }
 }
 
@@ -49,8 +49,9 @@ void warn_of_error(Calibration<Dim>& result, const RecordedCases<Dim, double>& c
                                    .about = best.name,
                                    .message = text("nothing was learnt: the error on the training cases is ",
                                                    best.training.error, ", as of a network that does not move"),
-                                   .advice = "the forces that moved the body must be in the recording (gravity is one), "
-                                             "and its unit of time be the second",
+                                   .advice =
+                                       "the forces that moved the body must be in the recording (gravity is one), "
+                                       "and its unit of time be the second",
                                    .values = {{"training_error", best.training.error}}});
     }
     if (is_usable(result.verdict)) {
@@ -72,10 +73,9 @@ void warn_of_error(Calibration<Dim>& result, const RecordedCases<Dim, double>& c
     result.warnings.push_back(
         {.code = WarningCode::unlike_reference,
          .about = best.name,
-         .message = text("the returned network moves unlike the reference (held-out error ", best.held_out.error,
-                         worst == result.parts.end() ? std::string()
-                                                     : text("; worst in ", worst->part, ": ", worst->error),
-                         ")"),
+         .message = text(
+             "the returned network moves unlike the reference (held-out error ", best.held_out.error,
+             worst == result.parts.end() ? std::string() : text("; worst in ", worst->part, ": ", worst->error), ")"),
          .advice = advice + " may help",
          .values = {{"held_out_error", best.held_out.error}, {"limit", options.limits.poor}}});
 }

@@ -54,7 +54,8 @@ public:
     CaseSimulator(const SpringNetwork<Dim, Scalar>& network, const Scenarios& scenarios, const Motions& references,
                   const MotionErrorOptions<Scalar>& options)
         : m_network(network), m_scenarios(scenarios), m_references(references), m_options(options),
-          m_explicit(network, {.step_fraction = options.step_fraction, .max_substeps = most_substeps(network, options)}),
+          m_explicit(network,
+                     {.step_fraction = options.step_fraction, .max_substeps = most_substeps(network, options)}),
           m_stiffness(network, scenarios, references, options.execution) {}
 
     /// Calls `visit(frame, positions)` for each frame of a case, again from the first where another way is tried; stops
@@ -67,7 +68,8 @@ public:
 private:
     /// Of one frame: cells that are pressed flat ask for ever shorter steps.
     static int most_substeps(const SpringNetwork<Dim, Scalar>& network, const MotionErrorOptions<Scalar>& options) {
-        const double most = options.most_explicit_work / static_cast<double>(network.n_springs() + network.n_cells() + 1);
+        const double most =
+            options.most_explicit_work / static_cast<double>(network.n_springs() + network.n_cells() + 1);
         return static_cast<int>(std::clamp(most, 1., 1e9));
     }
 
@@ -118,7 +120,8 @@ private:
             before = time;
         }
         Status status = Status::iteration_limit;
-        if (substeps * static_cast<double>(m_network.n_springs() + m_network.n_cells()) <= m_options.most_explicit_work) {
+        if (substeps * static_cast<double>(m_network.n_springs() + m_network.n_cells()) <=
+            m_options.most_explicit_work) {
             auto stepper = m_explicit;
             status = for_frames<Dim, Scalar>(
                 stepper, m_scenarios[c], times, std::numeric_limits<int>::max(),
