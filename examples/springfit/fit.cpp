@@ -162,10 +162,9 @@ public:
                 motion.clamped = nodes_to_clamp<Dim>(m_options.clamps, m_body.network.rest_positions);
             }
         }
-        const bool one = motions.size() == 1;
         auto cases = split_motions(std::move(motions));
-        cases.warnings = std::move(warnings);
-        m_source.reference = {{"kind", "recorded"}, {"split", one ? "time: first two thirds, last third" : "motions"}};
+        cases.warnings.insert(cases.warnings.begin(), warnings.begin(), warnings.end());
+        m_source.reference = {{"kind", "recorded"}};
         return cases;
     }
 

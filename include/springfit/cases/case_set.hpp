@@ -4,6 +4,7 @@
 #include <springfit/cases/load_case.hpp>
 #include <springfit/core/warning.hpp>
 #include <springfit/motion/replay.hpp>
+#include <springfit/motion/resample.hpp>
 
 namespace springfit {
 
@@ -90,6 +91,24 @@ void validate(const RecordedCases<Dim, Scalar>& recorded, Index n_nodes) {
     }
 }
 
+namespace detail {
+
+/// True where two frames are the same beside how far the body has moved from rest.
+template <int Dim, std::floating_point Scalar>
+bool are_equal(const Points<Dim, Scalar>& a, const Points<Dim, Scalar>& b, const Points<Dim, Scalar>& rest) {
+    return (a - b).norm() <= Scalar(1e-6) * (b - rest).norm();
+}
+
+/// True where nothing moves: one frame, or several that are the same.
+template <int Dim, std::floating_point Scalar>
+bool is_still(const Motion<Dim, Scalar>& motion) {
+    return std::all_of(motion.positions.begin(), motion.positions.end(), [&](const auto& frame) {
+        return are_equal<Dim, Scalar>(frame, motion.positions.front(), motion.rest_positions);
+    });
+}
+
+} // namespace detail
+
 /// The nodes that are at their rest position, to the last bit, in every frame: in a recording that names no clamps they
 /// are taken as held.
 template <int Dim, std::floating_point Scalar>
@@ -106,32 +125,71 @@ template <int Dim, std::floating_point Scalar>
     return nodes;
 }
 
-/// Motions that were recorded elsewhere, each replayed as a load case: the last quarter of several, at least one, is
-/// held out, and of a single one the last third of its time. Throws InvalidArgument for none, and for one of fewer than
-/// 4 frames.
+/// Motions and equilibria that were recorded elsewhere, each replayed as a load case.
+///
+/// A motion of one frame, or of equal ones, is an equilibrium. Of several motions, and of several equilibria, the last
+/// quarter is held out, at least one; of a single motion the last third of its time where there is nothing else to hold
+/// out. Equilibria that repeat an earlier one are left out, and motions with uneven frames are resampled, both with a
+/// warning. Throws InvalidArgument for none, for a motion of fewer than 4 frames, and where nothing is left to judge
+/// by.
 template <int Dim, std::floating_point Scalar>
 [[nodiscard]] RecordedCases<Dim, Scalar> split_motions(std::vector<Motion<Dim, Scalar>> motions) {
     require(!motions.empty(), "motions", "at least one", "none");
-    for (const auto& motion : motions) {
-        require(motion.n_frames() >= 4, text("motion ", motion.name), "at least 4 frames", motion.n_frames());
-    }
     RecordedCases<Dim, Scalar> recorded;
+    const auto warn = [&](WarningCode code, const Motion<Dim, Scalar>& motion, const char* message) {
+        recorded.warnings.push_back({.code = code,
+                                     .about = motion.name,
+                                     .message = text(motion.name, ": ", message),
+                                     .advice = {},
+                                     .values = {}});
+    };
+    std::vector<Motion<Dim, Scalar>> in_time, at_rest;
+    for (auto& motion : motions) {
+        require(motion.n_frames() > 0, text("motion ", motion.name), "at least one frame", "none");
+        if (detail::is_still(motion)) {
+            Motion<Dim, Scalar> frame = excerpt(motion, 0, 1);
+            const bool is_new = std::none_of(at_rest.begin(), at_rest.end(), [&](const auto& other) {
+                return detail::are_equal<Dim, Scalar>(other.positions.front(), frame.positions.front(),
+                                                      frame.rest_positions);
+            });
+            if (is_new) {
+                at_rest.push_back(std::move(frame));
+            } else {
+                warn(WarningCode::repeated_case, motion, "repeats an earlier equilibrium, and is left out");
+            }
+            continue;
+        }
+        require(motion.n_frames() >= 4, text("motion ", motion.name), "at least 4 frames, or one, an equilibrium",
+                motion.n_frames());
+        if (!has_even_frames(motion)) {
+            warn(WarningCode::resampled, motion, "its frames are not evenly spaced, and were resampled");
+            motion = resample(motion);
+        }
+        in_time.push_back(std::move(motion));
+    }
     const auto keep = [&](CaseRole role, Motion<Dim, Scalar> motion) {
         LoadCase<Dim, Scalar> load_case{.scenario = replay(motion)};
         load_case.role = role;
         recorded.add(std::move(load_case), std::move(motion));
     };
-    if (motions.size() == 1) {
-        const auto& motion = motions.front();
-        const Index split = 2 * motion.n_frames() / 3;
-        keep(CaseRole::training, excerpt(motion, 0, split));
-        keep(CaseRole::unseen_load, excerpt(motion, split, motion.n_frames()));
-    } else {
-        const std::size_t n_held_out = std::max<std::size_t>(1, motions.size() / 4);
-        for (std::size_t m = 0; m < motions.size(); ++m) {
-            keep(m + n_held_out < motions.size() ? CaseRole::training : CaseRole::unseen_load, std::move(motions[m]));
+    for (auto* set : {&in_time, &at_rest}) {
+        const std::size_t n = set->size();
+        const std::size_t n_held_out = n > 1 ? std::max<std::size_t>(1, n / 4) : 0;
+        for (std::size_t m = 0; m < n; ++m) {
+            if (n == 1 && set == &in_time && at_rest.size() < 2) { // nothing else to judge by
+                const auto& motion = set->front();
+                const Index split = 2 * motion.n_frames() / 3;
+                keep(CaseRole::training, excerpt(motion, 0, split));
+                keep(CaseRole::unseen_load, excerpt(motion, split, motion.n_frames()));
+            } else {
+                keep(m + n_held_out < n ? CaseRole::training : CaseRole::unseen_load, std::move((*set)[m]));
+            }
         }
     }
+    require(!recorded.held_out.empty(), "motions",
+            "two equilibria that differ, or a motion in time, to learn from one "
+            "and judge by the other",
+            text(at_rest.size(), " equilibrium"));
     return recorded;
 }
 

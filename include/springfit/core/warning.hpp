@@ -21,6 +21,8 @@ enum class WarningCode {
     case_failed,             ///< the network that is returned cannot be simulated in a held-out case
     nothing_learnt,          ///< the fit does not move like what it was fitted to
     small_strain,            ///< the loads strain little, since the reference is linear
+    resampled,               ///< a recorded motion had frames that are not evenly spaced
+    repeated_case,           ///< a recorded equilibrium was left out, since it repeats another
     incomplete_recording     ///< columns that a recording does not have were derived or taken as zero
 };
 
@@ -37,6 +39,8 @@ enum class WarningCode {
     case WarningCode::case_failed: return "case_failed";
     case WarningCode::nothing_learnt: return "nothing_learnt";
     case WarningCode::small_strain: return "small_strain";
+    case WarningCode::resampled: return "resampled";
+    case WarningCode::repeated_case: return "repeated_case";
     case WarningCode::incomplete_recording: return "incomplete_recording";
     }
     return "unknown";

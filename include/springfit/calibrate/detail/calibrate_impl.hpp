@@ -100,6 +100,25 @@ bool add_candidates(const NetworkVariant<Dim>& variant, const RecordedCases<Dim,
     return all_scored && !made.interrupted;
 }
 
+/// Matches motion to the end for the chosen candidate, which a try ended early. Returns false where the callback ended
+/// it.
+template <int Dim>
+bool finish_try(const NetworkVariant<Dim>& variant, const RecordedCases<Dim, double>& cases, CalibrateOptions options,
+                Calibration<Dim>& result) {
+    options.method = Method::trajectory;
+    Calibration<Dim> finished;
+    finished.seconds = {{"fit", 0.}, {"score", 0.}};
+    const bool all_done = add_candidates(variant, cases, options, finished);
+    result.seconds[0].second += finished.seconds[0].second;
+    result.seconds[1].second += finished.seconds[1].second;
+    auto& best = result.candidates[result.choice.candidate];
+    auto& found = finished.candidates.back();
+    if (found.trajectory && found.held_out.error <= best.held_out.error) {
+        best = std::move(found);
+    }
+    return all_done;
+}
+
 } // namespace detail
 
 template <int Dim>
@@ -110,16 +129,23 @@ Calibration<Dim> calibrate(const std::vector<NetworkVariant<Dim>>& variants, Rec
     result.warnings = cases.warnings;
     result.seconds = {{"fit", 0.}, {"score", 0.}};
     bool unfinished = cases.interrupted;
+    std::vector<std::size_t> variant_of; // the candidates
     for (std::size_t v = 0; v < variants.size(); ++v) {
         auto how = options;
         if (v + 1 < variants.size()) {
             how.matching_iterations = std::min(how.matching_iterations, detail::iterations_of_a_try);
         }
         unfinished = !detail::add_candidates(variants[v], cases, how, result) || unfinished;
+        variant_of.resize(result.candidates.size(), v);
         result.choice = choose(result.candidates, options);
         if (unfinished || verdict_on(result.best().held_out, options.limits) == Verdict::good) {
             break;
         }
+    }
+    const std::size_t chosen = variant_of[result.choice.candidate];
+    if (!unfinished && chosen + 1 < variants.size() && result.best().trajectory &&
+        result.best().status() == Status::iteration_limit) {
+        unfinished = !detail::finish_try(variants[chosen], cases, options, result);
     }
     const Candidate<Dim>& best = result.best();
     const auto remarks = warnings_on(best);

@@ -6,6 +6,7 @@
 #include <springfit/fit/trajectory/detail/window_simulation.hpp>
 #include <springfit/fit/trajectory/parameters.hpp>
 #include <springfit/motion/motion.hpp>
+#include <springfit/motion/resample.hpp>
 
 namespace springfit {
 

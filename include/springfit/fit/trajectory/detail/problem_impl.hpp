@@ -95,7 +95,7 @@ TrajectoryProblem<Dim>::TrajectoryProblem(const SpringNetwork<Dim, Scalar>& netw
 template <int Dim>
 std::size_t TrajectoryProblem<Dim>::group_of(const std::vector<int>& clamped, double step) {
     for (std::size_t g = 0; g < m_groups.size(); ++g) {
-        if (m_groups[g].clamped == clamped && std::abs(m_groups[g].step - step) <= 1e-9 * step) {
+        if (m_groups[g].clamped == clamped && std::abs(m_groups[g].step - step) <= 1e-5 * step) {
             return g;
         }
     }
@@ -116,12 +116,8 @@ void TrajectoryProblem<Dim>::add_windows(std::size_t number, std::vector<detail:
     double step = 0;
     if (last > 0) {
         step = (motion.times.back() - motion.times.front()) / static_cast<double>(last * m_options.steps_per_frame);
-        for (std::size_t t = 1; t < motion.times.size(); ++t) {
-            const double frame = motion.times[t] - motion.times[t - 1];
-            require(std::abs(frame - step * m_options.steps_per_frame) < 1e-6 * frame,
-                    text("motion '", motion.name, "'"), "evenly spaced frames",
-                    text("a gap of ", frame, " s before frame ", t));
-        }
+        require(has_even_frames(motion), text("motion '", motion.name, "'"), "evenly spaced frames (resample)",
+                "uneven ones");
     }
     const std::size_t group = group_of(motion.clamped, step);
     m_groups[group].mean += (motion.positions.front() - m_groups[group].mean) / ++m_groups[group].n_motions;
