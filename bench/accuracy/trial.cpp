@@ -36,6 +36,7 @@ CalibrateOptions fit_options(bool acceleration, const Settings& settings) {
     how.exact_solver = exact_solver();
     how.start = 0;
     how.horizon = 0;
+    how.steps_per_frame = 1;
     how.matching_iterations = 20;
     how.matching_tolerance = 2e-3;
     how.matching_seconds = std::numeric_limits<double>::infinity();

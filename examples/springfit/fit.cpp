@@ -69,7 +69,14 @@ void check(const FitOptions& options) {
             options.zeta.value_or(0));
     require(!options.zeta || options.damping == "ratio", "--zeta", "--damping ratio beside it",
             "--damping " + options.damping);
-    if (!options.references.empty() || is_motion_file(options.input)) {
+    const bool is_recorded = !options.references.empty() || is_motion_file(options.input);
+    if (options.gravity) {
+        require(is_recorded, "--gravity", "a recorded motion; the FEM reference has its own loads", "none");
+        for (double g : *options.gravity) {
+            require(std::isfinite(g), "--gravity", "finite numbers, m/s^2", g);
+        }
+    }
+    if (is_recorded) {
         const auto refuse = [](bool given, const char* name) {
             require(!given, name, "an FEM reference", "a recorded motion, for which it has no meaning");
         };
@@ -155,9 +162,14 @@ public:
     /// Motions that another program recorded.
     [[nodiscard]] RecordedCases<Dim, double> recorded(std::vector<Motion<Dim, double>> motions,
                                                       std::vector<Warning> warnings) {
+        require(!m_options.gravity || static_cast<int>(m_options.gravity->size()) == Dim, "--gravity",
+                text(Dim, " numbers, one per dimension"), m_options.gravity ? m_options.gravity->size() : 0);
         for (auto& motion : motions) {
             require(motion.n_nodes() == m_body.network.n_nodes(), text("reference ", motion.name),
                     text(m_body.network.n_nodes(), " nodes, as in the mesh"), motion.n_nodes());
+            if (m_options.gravity) {
+                add_gravity(motion);
+            }
             if (!m_options.clamps.empty()) {
                 motion.clamped = nodes_to_clamp<Dim>(m_options.clamps, m_body.network.rest_positions);
             }
@@ -249,6 +261,14 @@ public:
     }
 
 private:
+    void add_gravity(Motion<Dim, double>& motion) const {
+        const auto& g = *m_options.gravity;
+        const Points<Dim, double> weight = Vector<Dim, double>::Map(g.data()) * m_body.network.mass.transpose();
+        for (auto& forces : motion.external_forces) {
+            forces += weight;
+        }
+    }
+
     [[nodiscard]] bool holds_network(const std::vector<int>& clamped) const {
         return holds_rigidly(m_body.network.rest_positions, m_fine->nodes.clamped_at_network(clamped));
     }

@@ -56,6 +56,13 @@ void declare_fit(CLI::App& app, program::FitOptions& options) {
                    "recorded motion of the same nodes (.xdmf .h5), in place of the FEM; may be given several times")
         ->group(reference);
 
+    app.add_option_function<std::vector<double>>(
+           "--gravity", [&options](const std::vector<double>& g) { options.gravity = g; },
+           "acceleration that acted on the whole body in recorded motions, m/s^2, where their forces do not have it "
+           "(0,0,-9.81; default none)")
+        ->delimiter(',')
+        ->group(reference);
+
     const std::string mesh = "Mesh";
     auto* cell_size = add_optional(app, "--cell-size", options.cell_size, "size of the cells, m")->group(mesh);
     add_optional(app, "--nodes", options.nodes, "number of nodes to aim at (default 1000)")

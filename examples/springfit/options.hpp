@@ -34,7 +34,8 @@ struct FitOptions {
     std::string method = "auto";
     std::string exact_solver = "native";
     std::string damping = "proportional";
-    std::optional<double> zeta; ///< of `--damping ratio`
+    std::optional<double> zeta;                   ///< of `--damping ratio`
+    std::optional<std::vector<double>> gravity{}; ///< of recorded motions, m/s^2
     std::string parts = "auto";
     bool second_ring = false;
     bool volume = false;               ///< cells that hold their volume, too

@@ -60,7 +60,8 @@ struct CalibrateOptions {
     /// Weight of the prior in matching of motion: cases are many enough to say more than a closed form does.
     double prior_weight = 1e-5;
     int horizon = 12;                 ///< frames that a window of a motion in time predicts; 0: each motion to its end
-    int steps_per_frame = 1;          ///< of the integrator, where motions in time are matched, >= 1
+    int steps_per_frame = 0;          ///< of the integrator, where motions in time are matched; 0: so many that its own
+                                      ///< error stays small beside what a good fit leaves (`detail::steps_per_frame`)
     int matching_iterations = 40;     ///< of matching of motion at most, >= 0
     double matching_tolerance = 1e-3; ///< matching ends when iterations gain less than this part, > 0
     double matching_seconds = 300;    ///< of matching of motion at most, > 0, of wall clock

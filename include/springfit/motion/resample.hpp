@@ -53,8 +53,7 @@ template <int Dim, std::floating_point Scalar>
         result.times[t] = time;
         result.positions[t] = (1 + 2 * s) * (1 - s) * (1 - s) * xa + s * s * (3 - 2 * s) * xb +
                               gap * s * (1 - s) * ((1 - s) * va - s * vb);
-        result.velocities[t] =
-            6 * s * (1 - s) / gap * (xb - xa) + (1 - s) * (1 - 3 * s) * va + s * (3 * s - 2) * vb;
+        result.velocities[t] = 6 * s * (1 - s) / gap * (xb - xa) + (1 - s) * (1 - 3 * s) * va + s * (3 * s - 2) * vb;
         result.accelerations[t] = linear(motion.accelerations);
         result.external_forces[t] = linear(motion.external_forces);
     }
