@@ -241,6 +241,7 @@ public:
             judge_fine_nodes(calibration);
             calibration.seconds.back().second += at_fine.seconds();
         }
+        print_body(calibration);
         print_table(calibration);
         if (m_fine) {
             const auto& judged = m_source.detail["reference_nodes"];
@@ -261,6 +262,22 @@ public:
     }
 
 private:
+    void print_body(const Calibration<Dim>& calibration) const {
+        const auto& rest = m_body.network.rest_positions;
+        const Vector<Dim, double> size = rest.rowwise().maxCoeff() - rest.rowwise().minCoeff();
+        std::string extent = text(size(0));
+        for (int d = 1; d < Dim; ++d) {
+            extent += text(" x ", size(d));
+        }
+        std::printf("\nthe body: %s m, %.4g kg, slowest period %.4g s; damping %.3g s times stiffness\n",
+                    extent.c_str(), m_body.network.mass.sum(), calibration.period, calibration.cases.stiffness_damping);
+        const auto& shown = calibration.cases.held_out.motions.front();
+        if (shown.n_frames() > 1) {
+            std::printf("recorded: %.4g s in %lld frames\n", shown.times.back() - shown.times.front(),
+                        static_cast<long long>(shown.n_frames()));
+        }
+    }
+
     void add_gravity(Motion<Dim, double>& motion) const {
         const auto& g = *m_options.gravity;
         const Points<Dim, double> weight = Vector<Dim, double>::Map(g.data()) * m_body.network.mass.transpose();

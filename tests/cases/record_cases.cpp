@@ -18,6 +18,7 @@ RecordCasesOptions<Dim, double> few() {
     options.training_equilibria = 7;
     options.held_out_loads = 2;
     options.held_out_kinds = 2;
+    options.strain = 0.05;
     return options;
 }
 
@@ -276,4 +277,88 @@ TEST_CASE("recorded motions are split") {
     CHECK_THROWS_AS((void)(split_motions<2, double>({excerpt(motion, 0, 3)})), InvalidArgument);
     CHECK_THROWS_AS(validate(one, 5), InvalidArgument);
     validate(one, 4);
+
+    // Frames that are off by little are even; others are resampled.
+    auto digits = motion;
+    digits.times[3] += 2e-5;
+    CHECK(split_motions<2, double>({digits}).warnings.empty());
+    auto dropped = motion;
+    for (auto* frames : {&dropped.positions, &dropped.velocities, &dropped.accelerations, &dropped.external_forces}) {
+        frames->erase(frames->begin() + 4);
+    }
+    dropped.times.erase(dropped.times.begin() + 4);
+    const auto resampled = split_motions<2, double>({dropped, motion});
+    REQUIRE(resampled.warnings.size() == 1);
+    CHECK(resampled.warnings.front().code == WarningCode::resampled);
+    CHECK(has_even_frames(resampled.training.motions.front()));
+}
+
+TEST_CASE("recorded equilibria are split, alone and beside motions, and repeated ones are one") {
+    Motion<2, double> rest;
+    rest.rest_positions = Points<2, double>::Random(2, 4);
+    rest.clamped = {0};
+    const auto bent = [&](double by, int frames) {
+        Motion<2, double> motion = rest;
+        for (int t = 0; t < frames; ++t) {
+            motion.times.push_back(1. + t);
+            motion.positions.push_back(motion.rest_positions);
+            motion.positions.back().rightCols(2).array() += by;
+            for (auto* columns : {&motion.velocities, &motion.accelerations, &motion.external_forces}) {
+                columns->push_back(Points<2, double>::Zero(2, 4));
+            }
+        }
+        return motion;
+    };
+    const auto some =
+        split_motions<2, double>({bent(0.1, 1), bent(0.2, 1), bent(0.3, 4), bent(0.4, 1), bent(0.2, 1), bent(0.5, 1)});
+    CHECK(some.training.size() == 4);
+    REQUIRE(some.held_out.size() == 1);
+    CHECK(some.held_out.is_static(0));
+    CHECK(some.training.is_static(2)); // four equal frames are one equilibrium
+    REQUIRE(some.warnings.size() == 1);
+    CHECK(some.warnings.front().code == WarningCode::repeated_case);
+    CHECK_THROWS_WITH_AS((void)(split_motions<2, double>({bent(0.1, 4), bent(0.1, 1)})),
+                         doctest::Contains("two equilibria"), InvalidArgument);
+    auto moving = bent(0.1, 8);
+    for (std::size_t t = 0; t < 8; ++t) {
+        moving.positions[t].rightCols(1).array() += 0.01 * static_cast<double>(t);
+    }
+    const auto both = split_motions<2, double>({moving, bent(0.2, 1), bent(0.3, 1)});
+    CHECK(both.training.size() == 2); // the motion, and an equilibrium
+    CHECK(both.held_out.size() == 1);
+    const auto one_each = split_motions<2, double>({moving, bent(0.2, 1)});
+    CHECK(one_each.training.size() == 2);
+    CHECK(one_each.held_out.size() == 1);
+    CHECK_FALSE(one_each.held_out.is_static(0));
+}
+
+TEST_CASE("a linear reference is loaded little unless it is told otherwise, motions in time by strain as well") {
+    const auto body = test::small_specimen<2>();
+    auto options = few<2>();
+    options.strain.reset();
+    const auto by_linear = record_cases(fem_recorder(test::small_box<2>(), linear, 1000.), body, options);
+    CHECK(by_linear.strain == 0.001);
+    REQUIRE(!by_linear.warnings.empty());
+    CHECK(by_linear.warnings.front().code == WarningCode::small_strain);
+    const auto recorder = fem_recorder(test::small_box<2>(), fem::NeoHookean{.young = 1e4, .poisson = 0.3}, 1000.);
+    const auto strain_of = [&](const RecordCasesOptions<2, double>& how) {
+        const auto cases = record_cases(recorder, body, how);
+        double largest = 0;
+        for (std::size_t c = 0; c < cases.training.size(); ++c) {
+            if (!cases.training.is_static(c)) {
+                for (const auto& positions : cases.training.motions[c].positions) {
+                    largest = std::max(largest, edge_strain(body.edges, body.rest_positions, positions).percentile_95);
+                }
+            }
+        }
+        CHECK(cases.strain == how.strain.value_or(0.05));
+        return largest;
+    };
+    options.training_equilibria = 0;
+    options.strain = 0.01;
+    const double small = strain_of(options);
+    CHECK(small > 0.005);
+    CHECK(small < 0.025);      // a ramp overshoots its static response
+    options.deformation = 0.2; // asked for: whatever the strain
+    CHECK(strain_of(options) > 2 * small);
 }

@@ -59,6 +59,13 @@ public:
 
     explicit ReferenceRecorder(const R& reference) : m_reference(&reference) {}
 
+    [[nodiscard]] bool is_linear() const override {
+        if constexpr (requires { R::is_linear; }) {
+            return R::is_linear;
+        } else {
+            return false;
+        }
+    }
     [[nodiscard]] bool finds_equilibria() const override { return StaticReference<R>; }
     [[nodiscard]] bool takes_damping() const override { return false; }
     [[nodiscard]] Scalar stiffness_damping() const override {

@@ -47,6 +47,7 @@ struct RecordedCases {
     CaseSet<Dim, Scalar> training;
     CaseSet<Dim, Scalar> held_out;
     Scalar stiffness_damping = 0; ///< beta of D = beta K, s, of the reference as far as it is known
+    bool knows_damping = true;    ///< else it is found with the fit
     Scalar strain = 0;            ///< that loads were scaled to; 0: not known
     Scalar deformation = 0;       ///< that loads in time were scaled to at most, as a part of the size; 0: not known
     Scalar period = 0;            ///< of the slowest motion that the loads excite, s; 0: not known
@@ -136,6 +137,7 @@ template <int Dim, std::floating_point Scalar>
 [[nodiscard]] RecordedCases<Dim, Scalar> split_motions(std::vector<Motion<Dim, Scalar>> motions) {
     require(!motions.empty(), "motions", "at least one", "none");
     RecordedCases<Dim, Scalar> recorded;
+    recorded.knows_damping = false;
     const auto warn = [&](WarningCode code, const Motion<Dim, Scalar>& motion, const char* message) {
         recorded.warnings.push_back({.code = code,
                                      .about = motion.name,

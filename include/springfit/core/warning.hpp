@@ -23,6 +23,7 @@ enum class WarningCode {
     small_strain,            ///< the loads strain little, since the reference is linear
     resampled,               ///< a recorded motion had frames that are not evenly spaced
     repeated_case,           ///< a recorded equilibrium was left out, since it repeats another
+    other_unit,              ///< a recording is far longer or shorter than the body's own period
     incomplete_recording     ///< columns that a recording does not have were derived or taken as zero
 };
 
@@ -41,6 +42,7 @@ enum class WarningCode {
     case WarningCode::small_strain: return "small_strain";
     case WarningCode::resampled: return "resampled";
     case WarningCode::repeated_case: return "repeated_case";
+    case WarningCode::other_unit: return "other_unit";
     case WarningCode::incomplete_recording: return "incomplete_recording";
     }
     return "unknown";

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <numbers>
 #include <string>
 #include <string_view>
 
@@ -80,6 +81,30 @@ void warn_of_error(Calibration<Dim>& result, const RecordedCases<Dim, double>& c
          .values = {{"held_out_error", best.held_out.error}, {"limit", options.limits.poor}}});
 }
 
+/// The slowest period of the body as a closed form has it, s. Recorded motions that are far longer or shorter are
+/// remarked on.
+template <int Dim>
+double period_of(const SpringNetwork<Dim, double>& network, const RecordedCases<Dim, double>& cases,
+                 std::vector<Warning>& warnings) {
+    const auto& first = cases.held_out.motions.front();
+    const double omega = lowest_frequency(network, first.clamped).omega;
+    if (!(omega > 0)) {
+        return 0;
+    }
+    const double period = 2 * std::numbers::pi / omega;
+    const double recorded = first.n_frames() > 1 ? first.times.back() - first.times.front() : period;
+    constexpr double far = 100; // our definition: units are off by 1000
+    if (cases.period == 0 && (recorded > far * period || recorded < period / far)) {
+        warnings.push_back(
+            {.code = WarningCode::other_unit,
+             .about = first.name,
+             .message = text("the recording lasts ", recorded, " s, the body's slowest period is about ", period, " s"),
+             .advice = "lengths must be in m and times in s",
+             .values = {{"recorded", recorded}, {"period", period}}});
+    }
+    return period;
+}
+
 /// Makes and scores the candidates of a variant. Returns false where the callback ended it.
 template <int Dim>
 bool add_candidates(const NetworkVariant<Dim>& variant, const RecordedCases<Dim, double>& cases,
@@ -87,6 +112,7 @@ bool add_candidates(const NetworkVariant<Dim>& variant, const RecordedCases<Dim,
     const Stopwatch fitting;
     auto made = make_candidates(variant.given, cases, options);
     result.warnings.insert(result.warnings.end(), made.warnings.begin(), made.warnings.end());
+    result.cases.stiffness_damping = made.stiffness_damping;
     result.seconds[0].second += fitting.seconds();
     const Stopwatch scoring;
     const bool all_scored = score(made.all, cases, options);
@@ -158,6 +184,8 @@ Calibration<Dim> calibrate(const std::vector<NetworkVariant<Dim>>& variants, Rec
         detail::warn_of_error(result, cases, options);
     }
     result.stable_step = stable_step(best.network, cases.held_out.motions.front().clamped);
+    cases.stiffness_damping = result.cases.stiffness_damping;
+    result.period = detail::period_of(variants.front().given.front().network, cases, result.warnings);
     result.cases = std::move(cases);
     return result;
 }

@@ -9,6 +9,7 @@
 #include <springfit/fit/acceleration/objective.hpp>
 #include <springfit/network/damping.hpp>
 #include <springfit/network/forces.hpp>
+#include <springfit/score/frequency.hpp>
 #include <springfit/score/motion_error.hpp>
 
 namespace springfit {
@@ -58,9 +59,10 @@ class CandidateMaker {
 public:
     CandidateMaker(const std::vector<NamedNetwork<Dim>>& given, const RecordedCases<Dim, double>& cases,
                    const CalibrateOptions& options)
-        : m_given(given), m_cases(cases), m_options(options) {}
+        : m_given(given), m_cases(cases), m_options(options), m_stiffness_damping(cases.stiffness_damping) {}
 
     [[nodiscard]] Candidates<Dim> make() {
+        m_result.stiffness_damping = m_stiffness_damping;
         for (const auto& named : m_given) {
             Candidate<Dim> candidate{.name = named.name, .network = named.network};
             candidate.n_clamped = named.n_clamped;
@@ -87,7 +89,7 @@ private:
     void set_damping(SpringNetwork<Dim, double>& network) const {
         network.damping = m_options.damping == DampingRule::ratio
                               ? mass_stiffness_damping(network, m_options.zeta)
-                              : stiffness_proportional_damping(network, m_cases.stiffness_damping);
+                              : stiffness_proportional_damping(network, m_stiffness_damping);
     }
 
     /// The given network that is nearest to the half of the training equilibria that move least; the first where there
@@ -133,7 +135,7 @@ private:
     }
 
     void match_motion() {
-        const SpringNetwork<Dim, double> prior = m_options.start ? m_result.all[*m_options.start].network : nearest();
+        SpringNetwork<Dim, double> prior = m_options.start ? m_result.all[*m_options.start].network : nearest();
         TrajectoryOptions how;
         how.execution = m_options.execution;
         how.prior_weight = m_options.prior_weight;
@@ -147,10 +149,14 @@ private:
             how.parameters.damping.fit = m_options.damping == DampingRule::fitted && (prior.damping.array() > 0).any();
         }
         if (m_options.damping == DampingRule::proportional) {
-            how.parameters.damping_per_stiffness = m_cases.stiffness_damping;
+            how.parameters.damping_per_stiffness = m_stiffness_damping;
         }
         Stage stage(m_options.progress, "fit trajectory");
         try {
+            if (in_time && m_options.damping == DampingRule::proportional && !m_cases.knows_damping) {
+                how.parameters.damping_per_stiffness = find_damping(prior, cases, how, stage);
+                set_damping(prior);
+            }
             const TrajectoryProblem<Dim> problem(prior, cases.motions, how);
             GaussNewtonOptions engine;
             engine.max_iterations = m_options.matching_iterations;
@@ -189,6 +195,65 @@ private:
         }
     }
 
+    /// Finds the one beta of D = beta K by which a network moves most like the training motions in time: its stiffness
+    /// is matched without damping first, then beta is searched for by sections. All candidates get it.
+    double find_damping(SpringNetwork<Dim, double> network, const CaseSet<Dim, double>& cases, TrajectoryOptions how,
+                        Stage& stage) {
+        how.parameters.damping_per_stiffness = 0;
+        network.damping.setZero();
+        const TrajectoryProblem<Dim> problem(network, cases.motions, how);
+        GaussNewtonOptions engine;
+        engine.max_iterations = 12;
+        engine.tolerance = 0.01;
+        engine.progress = stage.part();
+        if (const auto report = gauss_newton(problem, engine); usable(report.status)) {
+            apply(problem, report, network);
+        }
+        std::vector<std::size_t> moving;
+        for (std::size_t c = 0; c < cases.size() && moving.size() < 4; ++c) {
+            if (!cases.is_static(c)) {
+                moving.push_back(c);
+            }
+        }
+        const auto set = cases.subset(moving);
+        const auto scenarios = set.scenarios();
+        const auto error_of = [&](double beta) {
+            network.damping = stiffness_proportional_damping(network, beta);
+            return motion_error(network, scenarios, set.motions, {}, {.execution = m_options.execution}).error;
+        };
+        const auto lowest = lowest_frequency(network, set.motions.front().clamped);
+        if (!(lowest.omega > 0)) {
+            return 0;
+        }
+        // beta omega / 2 is the ratio of critical damping of the slowest motion.
+        double low = std::log(0.002 / lowest.omega), high = std::log(1 / lowest.omega);
+        constexpr double golden = 0.6180339887498949;
+        double a = high - golden * (high - low), b = low + golden * (high - low);
+        double error_a = error_of(std::exp(a)), error_b = error_of(std::exp(b));
+        for (int section = 0; section < 10; ++section) {
+            if (error_a < error_b) {
+                high = b;
+                b = a;
+                error_b = error_a;
+                a = high - golden * (high - low);
+                error_a = error_of(std::exp(a));
+            } else {
+                low = a;
+                a = b;
+                error_a = error_b;
+                b = low + golden * (high - low);
+                error_b = error_of(std::exp(b));
+            }
+        }
+        const double found = std::exp(error_a < error_b ? a : b);
+        m_stiffness_damping = error_of(0) <= std::min(error_a, error_b) ? 0 : found;
+        for (auto& candidate : m_result.all) {
+            set_damping(candidate.network);
+        }
+        m_result.stiffness_damping = m_stiffness_damping;
+        return m_stiffness_damping;
+    }
+
     void fit_accelerations() {
         // The prior is what a spring gets that no motion excites.
         const SpringNetwork<Dim, double> prior = m_result.all[m_options.start.value_or(0)].network;
@@ -196,7 +261,7 @@ private:
         AccelerationOptions<double> how;
         how.parameters.damping.fit = m_options.damping == DampingRule::fitted;
         if (m_options.damping == DampingRule::proportional) {
-            how.parameters.damping_per_stiffness = m_cases.stiffness_damping;
+            how.parameters.damping_per_stiffness = m_stiffness_damping;
         }
         const AccelerationProblem problem = [&] {
             const Stage stage(m_options.progress, "assemble objective");
@@ -247,6 +312,7 @@ private:
     const std::vector<NamedNetwork<Dim>>& m_given;
     const RecordedCases<Dim, double>& m_cases;
     const CalibrateOptions& m_options;
+    double m_stiffness_damping; ///< beta of D = beta K, s
     Candidates<Dim> m_result;
 };
 
