@@ -22,7 +22,9 @@ io::RecordedMotion<Dim, double> read_recorded(const std::string& path, std::vect
                             .values = {}});
     };
     for (const std::string& column : recorded.differenced) {
-        warn(path + ": " + column + " is not in the file and was differenced");
+        if (recorded.motion.n_frames() > 1) { // an equilibrium has none
+            warn(path + ": " + column + " is not in the file and was differenced");
+        }
     }
     if (!recorded.forces_recorded) {
         warn(path + ": external forces are not in the file and were taken as zero");
