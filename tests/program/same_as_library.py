@@ -53,7 +53,7 @@ run(MESH_EXAMPLE, mesh, folder / "library")
 run(PROGRAM, "fit", mesh, *MATERIAL, "--strain", "0.01", "--deformation", "0.01", "--out", folder / "program")
 assert model_in(folder / "library") == model_in(folder / "program")
 report = json.load(open(folder / "program" / "report.json"))
-assert report["verdict"] == "good" and report["detail"]["chosen_by"] == "least_held_out_error"
+assert report["verdict"] in ("good", "fair") and report["detail"]["chosen_by"] == "least_held_out_error"
 fits = report["detail"]["fits"]
 held_out = set(report["detail"]["reference"]["held_out_cases"])
 for name, fit in fits.items():  # every case is there, with its error or why it failed
