@@ -101,8 +101,8 @@ TEST_CASE("recorders answer as their references do") {
 TEST_CASE_TEMPLATE("load cases of one's own are recorded by their roles", T, test::Space<2, double>,
                    test::Space<3, double>) {
     constexpr int dim = T::dimension;
-    const auto body = specimen<dim>();
-    const auto reference = fem_recorder(box<dim>(), linear, 1000.);
+    const auto body = test::small_specimen<dim>();
+    const auto reference = fem_recorder(test::small_box<dim>(), linear, 1000.);
     const auto loads = random_load_cases(
         body, {.training = 4, .clamps = 2, .held_out_loads = 2, .held_out_kinds = 3, .held_out_clamp = 1});
     const auto statics = record_equilibria(reference, body, loads, {.strain = 0.01});
@@ -142,8 +142,8 @@ TEST_CASE_TEMPLATE("load cases of one's own are recorded by their roles", T, tes
 }
 
 TEST_CASE("what has no equilibrium is left out with a warning, even if nothing is left") {
-    const auto body = specimen<2>();
-    auto network = springs_along_edges(box<2>(), {.density = 1000.});
+    const auto body = test::small_specimen<2>();
+    auto network = springs_along_edges(test::small_box<2>(), {.density = 1000.});
     network.stiffness.setConstant(1e3);
     const ReferenceRecorder reference(network);
     auto loads =
