@@ -72,9 +72,9 @@ TEST_CASE("the error is the root of summed squares over free nodes, frames and c
 
     motion.positions.pop_back();
     const auto cut = motion_error<2, double>({reference, motion}, {reference, reference});
-    CHECK(std::isinf(cut.error));
+    CHECK(test::relative(cut.error, std::sqrt(1. / 2), 1.) < 1e-15); // as if it had not moved
     CHECK(cut.case_errors[0] == 0);
-    CHECK(std::isinf(cut.case_errors[1]));
+    CHECK(cut.case_errors[1] == 1);
     CHECK(cut.status == Status::diverged);
     CHECK_THROWS_AS((void)(motion_error<2, double>({motion}, {reference, reference})), InvalidArgument);
 }
@@ -193,9 +193,11 @@ TEST_CASE("a motion too stiff for explicit steps is stepped implicitly, to nearl
     CHECK(test::relative(implicit.error, exact.error, exact.error) < 0.02);
     CHECK(implicit.error != exact.error);
     // Of second order in the step.
+    const auto small_steps =
+        simulate(network, set.scenarios[0], set.references[0].times, {}, {.step_fraction = 0.005}).motion;
     const auto error_of = [&](int steps) {
-        return motion_error(network, set.scenarios, set.references, {},
-                            {.most_explicit_work = 0, .implicit_steps_per_frame = steps})
+        return motion_error<3, double>(network, {set.scenarios[0]}, {small_steps}, {},
+                                       {.most_explicit_work = 0, .implicit_steps_per_frame = steps})
             .error;
     };
     const double coarse = error_of(10);

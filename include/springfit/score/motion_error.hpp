@@ -145,13 +145,12 @@ motion_error(const SpringNetwork<Dim, Scalar>& network, const std::vector<Scenar
         const auto& reference = references[c];
         double compared = 0; // frames, in the present try
         const auto compare = [&](std::size_t frame, const Points<Dim, Scalar>& positions) {
-            if (frame == 0) { // the first try, or another
+            if (frame == 0 && compared > 0) { // another try
                 sums[c] = {};
-                const bool go_on = add_done(-compared);
-                compared = 0;
-                if (!go_on) {
+                if (!add_done(-compared)) {
                     return false;
                 }
+                compared = 0;
             }
             sums[c].template add<Dim, Scalar>(positions, reference.positions[frame], reference.rest_positions, free[c]);
             compared += 1;
