@@ -33,9 +33,8 @@ io::RecordedMotion<3, double> some_recording() {
 int main(int argc, char** argv) {
     const auto recorded = argc > 1 ? io::read_motion<3, double>(argv[1]) : some_recording();
     const Mesh<3, double, Tet4> mesh{recorded.motion.rest_positions, recorded.topology.cells};
-    const auto network = springs_along_edges(mesh, {.density = 1000.});
-    const auto result =
-        calibrate(closed_form_networks(mesh, network, solid), split_motions<3, double>({recorded.motion}));
+    const auto variants = network_variants<3>(mesh, solid, {.density = 1000.});
+    const auto result = calibrate(variants, split_motions<3, double>({recorded.motion}));
 
     for (const auto& candidate : result.candidates) {
         std::printf("%-14s %.4f\n", candidate.name.c_str(), candidate.held_out.error);

@@ -94,7 +94,7 @@ assert json.load(open(again / "model.json")) == model
 # One method alone is returned even where another would be better.
 fit(folder / "cube.off", "--young", 1e4, "--poisson", 0.3, "--density", 1000, "--nodes", 60, "--training-cases",
     1, "--held-out-cases", 1, "--frames", 8, "--method", "dominant-term", "--out", again)
-assert json.load(open(again / "report.json"))["method"] == "dominant_term"
+assert json.load(open(again / "report.json"))["method"].startswith("dominant_term")
 
 # What a run with a finer reference left in the folder does not stay beside the files of one without.
 for name in ("surface.h5", "surface.xdmf"):

@@ -11,7 +11,7 @@ struct MotionErrorOptions {
     Scalar step_fraction = Scalar(0.5); ///< explicit sub-step as a fraction of the stable step, in (0, 1)
     int max_iterations = 500;           ///< Newton iterations of a static case, >= 1
     /// A motion in time that would take more sub-steps times springs is stepped implicitly.
-    double most_explicit_work = 4e9;
+    double most_explicit_work = 1e9;
     int implicit_steps_per_frame = 16; ///< then, >= 1
     Execution execution{};             ///< cases are independent of each other
 };
