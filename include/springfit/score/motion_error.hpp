@@ -135,6 +135,7 @@ motion_error(const SpringNetwork<Dim, Scalar>& network, const std::vector<Scenar
     std::mutex reporting;
     double n_done = 0;
     std::atomic<bool> stopped = false;
+    std::atomic<bool> failed = false;
     const auto add_done = [&](double frames) {
         const std::scoped_lock lock(reporting);
         n_done += frames;
@@ -160,11 +161,17 @@ motion_error(const SpringNetwork<Dim, Scalar>& network, const std::vector<Scenar
         if (statuses[c] != Status::converged && statuses[c] != Status::interrupted) {
             sums[c].set_failed(reference, free[c]);
             (void)add_done(static_cast<double>(reference.n_frames()) - compared);
+            failed = true;
         }
     };
     options.execution.for_chunks(static_cast<Index>(references.size()), 1, [&](Index, Index begin, Index end) {
         for (Index c = begin; c < end && !stopped; ++c) {
-            score_case(static_cast<std::size_t>(c));
+            if (failed && options.stop_at_failure) {
+                sums[static_cast<std::size_t>(c)].set_failed(references[static_cast<std::size_t>(c)],
+                                                             free[static_cast<std::size_t>(c)]);
+            } else {
+                score_case(static_cast<std::size_t>(c));
+            }
         }
     });
     return detail::total_error(sums, std::move(statuses));

@@ -113,9 +113,11 @@ private:
         std::size_t best = 0;
         double least = std::numeric_limits<double>::infinity();
         for (std::size_t c = 0; c < m_given.size() && !statics.empty(); ++c) {
-            const double error = motion_error(m_result.all[c].network, scenarios, statics.motions, {},
-                                              {.max_iterations = scoring_iterations, .execution = m_options.execution})
-                                     .error;
+            const double error =
+                motion_error(
+                    m_result.all[c].network, scenarios, statics.motions, {},
+                    {.max_iterations = scoring_iterations, .stop_at_failure = true, .execution = m_options.execution})
+                    .error;
             if (error < least) {
                 least = error;
                 best = c;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include <springfit/calibrate/detail/candidates_impl.hpp>
@@ -24,21 +26,35 @@ bool score(std::vector<Candidate<Dim>>& candidates, const RecordedCases<Dim, dou
 
     Stage stage(options.progress, "score on motion", 2 * candidates.size());
     std::size_t part = 0;
+    double best = std::numeric_limits<double>::infinity();
     const auto scores_of = [&](const SpringNetwork<Dim, double>& network, const CaseSet<Dim, double>& set,
                                const std::vector<std::size_t>& numbers) {
+        // Beside a good network nobody waits for one that fails to be tried again and again.
         auto found = motion_error(network, set.scenarios(), set.motions, stage.part(part++),
-                                  {.max_iterations = detail::scoring_iterations, .execution = options.execution});
+                                  {.max_iterations = detail::scoring_iterations,
+                                   .stop_at_failure = best < options.limits.fair,
+                                   .execution = options.execution});
         if (stage.stopped()) {
             found.error = std::numeric_limits<double>::infinity();
         }
         return CaseScores{found.error, numbers, std::move(found.case_errors), std::move(found.case_statuses)};
     };
-    for (auto candidate = candidates.rbegin(); candidate != candidates.rend() && !stage.stopped(); ++candidate) {
-        candidate->held_out = scores_of(candidate->network, cases.held_out, all);
+    // Matched motion first, then the other fits: an early end leaves the best of them judged.
+    std::vector<Candidate<Dim>*> order;
+    for (auto candidate = candidates.rbegin(); candidate != candidates.rend(); ++candidate) {
+        order.push_back(&*candidate);
     }
-    for (auto candidate = candidates.rbegin(); candidate != candidates.rend() && !sampled.empty() && !stage.stopped();
-         ++candidate) {
-        candidate->training = scores_of(candidate->network, sample, sampled);
+    std::stable_partition(order.begin(), order.end(), [](const auto* candidate) { return candidate->trajectory; });
+    for (auto* candidate : order) {
+        if (!stage.stopped()) {
+            candidate->held_out = scores_of(candidate->network, cases.held_out, all);
+            best = std::min(best, candidate->held_out.error);
+        }
+    }
+    for (auto* candidate : order) {
+        if (!sampled.empty() && !stage.stopped()) {
+            candidate->training = scores_of(candidate->network, sample, sampled);
+        }
     }
     return !stage.stopped();
 }

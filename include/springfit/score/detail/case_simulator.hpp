@@ -85,7 +85,7 @@ private:
             how.start.resize(Dim, 0);
             found = equilibrium(springs, m_scenarios[c], how, false);
         }
-        if (found.status != Status::converged) {
+        if (found.status != Status::converged && !m_options.stop_at_failure) {
             found = rest_by_steps(c, how);
         }
         if (found.status == Status::converged && !visit(0, found.positions)) {
@@ -127,7 +127,8 @@ private:
                 stepper, m_scenarios[c], times, std::numeric_limits<int>::max(),
                 [&](std::size_t frame, const State<Dim, Scalar>& state) { return visit(frame, state.positions); });
         }
-        return status == Status::converged || status == Status::interrupted ? status : move_implicitly(c, visit);
+        const bool is_done = status == Status::converged || status == Status::interrupted;
+        return is_done || m_options.stop_at_failure ? status : move_implicitly(c, visit);
     }
 
     /// The error of implicit Euler is about h times something: x(h / 2) + (x(h / 2) - x(h)) is of second order.
