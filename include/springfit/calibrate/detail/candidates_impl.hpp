@@ -197,10 +197,8 @@ private:
         }
     }
 
-    /// Finds the one beta of D = beta K by which a network moves most like the training motions in time, window by
-    /// window: its stiffness is matched without damping first, then beta is searched for by golden sections. 0 where
-    /// none is better than that by a tenth of the misfit. (Over whole motions a network that is out of phase would call
-    /// for damping that is not there.) All candidates get it.
+    /// Finds the beta of D = beta K that is best in the windows of the training motions: stiffness is matched without
+    /// damping first; 0 where none gains a tenth. (Whole motions out of phase would call for damping.) All get it.
     double find_damping(SpringNetwork<Dim, double> network, const CaseSet<Dim, double>& cases, TrajectoryOptions how,
                         Stage& stage) {
         how.parameters.damping_per_stiffness = 0;
