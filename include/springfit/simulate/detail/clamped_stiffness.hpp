@@ -16,7 +16,7 @@ inline constexpr double statics_floor = 1e-9;
 template <class Network>
 class ClampedStiffness {
 public:
-    static constexpr int Dim = Network::dimension;
+    static constexpr int dimension = Network::dimension;
     using Scalar = typename Network::Scalar;
 
     ClampedStiffness(const Network& network, const std::vector<int>& clamped);
@@ -26,12 +26,12 @@ public:
     /// To copy: its pattern is made, its forces are not set.
     [[nodiscard]] const NetworkPotential<Network>& potential() const { return m_potential; }
     /// Of the stiffness at rest; not usable where the network does not hold its rest shape.
-    [[nodiscard]] const CorotatedPreconditioner<Dim, Scalar>& factor() const { return m_factor; }
+    [[nodiscard]] const CorotatedPreconditioner<dimension, Scalar>& factor() const { return m_factor; }
 
 private:
     const Network& m_network;
     NetworkPotential<Network> m_potential;
-    CorotatedPreconditioner<Dim, Scalar> m_factor;
+    CorotatedPreconditioner<dimension, Scalar> m_factor;
 };
 
 } // namespace springfit::detail

@@ -16,20 +16,20 @@ namespace springfit::detail {
 template <class Network>
 class NetworkPotential {
 public:
-    static constexpr int Dim = Network::dimension;
+    static constexpr int dimension = Network::dimension;
     using Scalar = typename Network::Scalar;
 
     NetworkPotential(const Network& network, const FreeNodes& free) : m_matrix(network_matrix(network, free)) {}
 
     [[nodiscard]] const FreeNodes& free_nodes() const { return m_matrix.free_nodes(); }
-    [[nodiscard]] const BlockMatrix<Dim, Scalar>& matrix() const { return m_matrix; }
+    [[nodiscard]] const BlockMatrix<dimension, Scalar>& matrix() const { return m_matrix; }
 
     /// Clamped nodes stand as in `positions`, now and in what follows; `external` is held by pointer until the next.
     ///
     /// `floor`, relative to the largest entry of the Hessian's diagonal, is added to the diagonal: it keeps the matrix
     /// regular where nothing holds a node, as across a flat membrane, and moves no minimum.
-    void set_statics(const Network& network, const Points<Dim, Scalar>& positions, const Points<Dim, Scalar>& external,
-                     Scalar floor = 0) {
+    void set_statics(const Network& network, const Points<dimension, Scalar>& positions,
+                     const Points<dimension, Scalar>& external, Scalar floor = 0) {
         m_network = &network;
         m_external = &external;
         m_points = positions;
@@ -55,8 +55,8 @@ public:
     }
 
     /// Positions of all nodes for the free coordinates x, m.
-    [[nodiscard]] const Points<Dim, Scalar>& positions(const Values<Scalar>& x) {
-        free_nodes().template scatter<Dim, Scalar>(x, m_points);
+    [[nodiscard]] const Points<dimension, Scalar>& positions(const Values<Scalar>& x) {
+        free_nodes().template scatter<dimension, Scalar>(x, m_points);
         return m_points;
     }
 
@@ -71,20 +71,20 @@ public:
     [[nodiscard]] Scalar energy_rounding() const;
 
     /// The gradient that rounding of the coordinates alone makes, N.
-    [[nodiscard]] Scalar gradient_rounding(const Points<Dim, Scalar>& positions) const;
+    [[nodiscard]] Scalar gradient_rounding(const Points<dimension, Scalar>& positions) const;
 
 private:
-    BlockMatrix<Dim, Scalar> m_matrix;
+    BlockMatrix<dimension, Scalar> m_matrix;
     const Network* m_network = nullptr;
-    const Points<Dim, Scalar>* m_external = nullptr;
+    const Points<dimension, Scalar>* m_external = nullptr;
     Scalar m_floor = 0;
     Scalar m_exact_below = 0;
     Scalar m_reach = std::numeric_limits<Scalar>::infinity();
     bool m_is_near = false;
-    bool m_is_semidefinite = true; ///< far from the minimum
-    Points<Dim, Scalar> m_points;  ///< all nodes; the free ones at the x last asked for
-    Points<Dim, Scalar> m_start;
-    Points<Dim, Scalar> m_forces;
+    bool m_is_semidefinite = true;      ///< far from the minimum
+    Points<dimension, Scalar> m_points; ///< all nodes; the free ones at the x last asked for
+    Points<dimension, Scalar> m_start;
+    Points<dimension, Scalar> m_forces;
 };
 
 } // namespace springfit::detail

@@ -14,8 +14,8 @@ bool NetworkPotential<Network>::use_semidefinite() {
 
 template <class Network>
 auto NetworkPotential<Network>::energy(const Values<Scalar>& x) -> Scalar {
-    free_nodes().template scatter<Dim, Scalar>(x, m_points);
-    Scalar energy = elastic_energy<Dim, Scalar>(*m_network, m_points);
+    free_nodes().template scatter<dimension, Scalar>(x, m_points);
+    Scalar energy = elastic_energy<dimension, Scalar>(*m_network, m_points);
     for (int i : free_nodes().nodes()) {
         energy -= m_external->col(i).dot(m_points.col(i) - m_start.col(i));
     }
@@ -24,18 +24,18 @@ auto NetworkPotential<Network>::energy(const Values<Scalar>& x) -> Scalar {
 
 template <class Network>
 void NetworkPotential<Network>::gradient(const Values<Scalar>& x, Values<Scalar>& gradient) {
-    free_nodes().template scatter<Dim, Scalar>(x, m_points);
+    free_nodes().template scatter<dimension, Scalar>(x, m_points);
     m_forces = *m_external;
-    add_elastic_forces<Dim, Scalar>(*m_network, m_points, m_forces);
-    gradient = -free_nodes().template gather<Dim, Scalar>(m_forces);
+    add_elastic_forces<dimension, Scalar>(*m_network, m_points, m_forces);
+    gradient = -free_nodes().template gather<dimension, Scalar>(m_forces);
     m_is_near = gradient.template lpNorm<Eigen::Infinity>() <= m_exact_below;
 }
 
 template <class Network>
 auto NetworkPotential<Network>::hessian(const Values<Scalar>& x) -> const SparseMatrix<Scalar>& {
-    free_nodes().template scatter<Dim, Scalar>(x, m_points);
+    free_nodes().template scatter<dimension, Scalar>(x, m_points);
     m_matrix.set_zero();
-    add_stiffness<Dim, Scalar>(
+    add_stiffness<dimension, Scalar>(
         *m_network, m_points, m_is_near || !m_is_semidefinite ? HessianForm::exact : HessianForm::positive_semidefinite,
         m_matrix);
     if (m_floor > 0) {
@@ -57,7 +57,7 @@ auto NetworkPotential<Network>::energy_rounding() const -> Scalar {
 }
 
 template <class Network>
-auto NetworkPotential<Network>::gradient_rounding(const Points<Dim, Scalar>& positions) const -> Scalar {
+auto NetworkPotential<Network>::gradient_rounding(const Points<dimension, Scalar>& positions) const -> Scalar {
     return std::numeric_limits<Scalar>::epsilon() * largest_stiffness(*m_network, positions) *
            positions.cwiseAbs().maxCoeff();
 }
