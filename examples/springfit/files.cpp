@@ -86,14 +86,15 @@ void print_table(const Calibration<Dim>& calibration) {
     for (const auto& candidate : calibration.candidates) {
         const CaseScores& scores = candidate.held_out;
         std::printf("%-16s %10s %10s %10s %12.3f %10.2f%s\n", candidate.name.c_str(), error_text(scores).c_str(),
-                    text(scores.n_failed(), " of ", scores.cases.size()).c_str(),
-                    error_text(candidate.training).c_str(), candidate.relative_stiffness, candidate.seconds,
+                    text(scores.n_failed(), " of ", scores.n_tried()).c_str(), error_text(candidate.training).c_str(),
+                    candidate.relative_stiffness, candidate.seconds,
                     &candidate == &calibration.best() ? "   <- returned" : "");
     }
-    std::printf(
-        "(errors: |x - x_ref| / |x_ref - x_rest| over free nodes, frames and cases, where a case that fails counts "
-        "as 1; failed:\nheld-out cases that the network cannot be simulated in; stiffness: energy in the "
-        "reference's motion beside the first\nclosed form)\n\n");
+    std::printf("(errors: |x - x_ref| / |x_ref - x_rest| over free nodes, frames and cases; failed: held-out cases "
+                "that the network\n"
+                "cannot be simulated in, which count as 1. Beside a good network one that fails is not tried on: what "
+                "is left counts\n"
+                "as 1, too. stiffness: energy in the reference's motion beside the first closed form)\n\n");
     for (const auto& [part, error] : calibration.parts) {
         std::printf("%s, held out: %-28s %.4f\n", calibration.best().name.c_str(), std::string(part).c_str(), error);
     }

@@ -26,14 +26,17 @@ struct CaseScores {
     double error = std::numeric_limits<double>::infinity(); ///< of the whole set; infinite until it is scored in full
     std::vector<std::size_t> cases;                         ///< numbers in the case set
     std::vector<double> errors;                             ///< of each of them; 1 where it failed
-    std::vector<Status> statuses;                           ///< how each ended; `interrupted` where it was not reached
+    std::vector<Status> statuses; ///< how each ended; `interrupted` where it was not reached, which counts as 1
 
     [[nodiscard]] bool is_scored() const { return error < std::numeric_limits<double>::infinity(); }
     /// Cases that the network could not be simulated in.
     [[nodiscard]] std::size_t n_failed() const {
-        return static_cast<std::size_t>(std::count_if(statuses.begin(), statuses.end(), [](Status status) {
-            return status != Status::converged && status != Status::interrupted;
-        }));
+        return n_tried() - static_cast<std::size_t>(std::count(statuses.begin(), statuses.end(), Status::converged));
+    }
+    /// Cases that it was simulated in, or was to be.
+    [[nodiscard]] std::size_t n_tried() const {
+        return statuses.size() -
+               static_cast<std::size_t>(std::count(statuses.begin(), statuses.end(), Status::interrupted));
     }
 };
 
@@ -48,7 +51,8 @@ struct Candidate {
         data_share{}; ///< of each spring, of matching of motion: above 1/2 the data set its stiffness, else the prior
     Index n_clamped = 0;
     std::string caveat{};
-    double seconds = 0; ///< of its fit, with the set-up of its problem
+    double stiffness_damping = 0; ///< beta of D = beta K, s: the reference's, or found where that is not known
+    double seconds = 0;           ///< of its fit, with the set-up of its problem
     CaseScores held_out{};
     CaseScores training{}; ///< on a sample of what fits learn from, where any was asked for
     /// Elastic energy in the reference's training motion beside that of the first network: below 1 the springs resist

@@ -11,7 +11,6 @@ namespace springfit {
 template <int Dim>
 struct Candidates {
     std::vector<Candidate<Dim>> all; ///< the given networks first, in their order, then the fits; unscored
-    double stiffness_damping = 0;    ///< beta of D = beta K, s: the reference's, or found where that is not known
     std::vector<Warning> warnings;
     bool interrupted = false; ///< a fit was ended early by the callback, or left out
 };

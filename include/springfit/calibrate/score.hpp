@@ -7,9 +7,11 @@
 
 namespace springfit {
 
-/// Fills in the errors of every candidate on the held-out cases, fits first, and then on a sample of the training's.
-/// A case that a candidate fails in counts as 1. Returns false where the callback ended it; what was not reached stays
-/// infinite.
+/// Fills in the errors of every candidate on the held-out cases, and then on a sample of the training's: matched motion
+/// first, other fits, then the given networks.
+///
+/// A case that a candidate fails in counts as 1. Once a candidate is good, one that fails is not tried on: the cases
+/// that are left count as 1, too. Returns false where the callback ended it; what was not reached stays infinite.
 template <int Dim>
 [[nodiscard]] bool score(std::vector<Candidate<Dim>>& candidates, const RecordedCases<Dim, double>& cases,
                          const CalibrateOptions& options = {});

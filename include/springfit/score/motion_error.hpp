@@ -135,7 +135,7 @@ motion_error(const SpringNetwork<Dim, Scalar>& network, const std::vector<Scenar
     std::mutex reporting;
     double n_done = 0;
     std::atomic<bool> stopped = false;
-    std::atomic<bool> failed = false;
+    std::atomic<Index> first_failed = static_cast<Index>(references.size()); // in their order, whoever runs them
     const auto add_done = [&](double frames) {
         const std::scoped_lock lock(reporting);
         n_done += frames;
@@ -161,19 +161,25 @@ motion_error(const SpringNetwork<Dim, Scalar>& network, const std::vector<Scenar
         if (statuses[c] != Status::converged && statuses[c] != Status::interrupted) {
             sums[c].set_failed(reference, free[c]);
             (void)add_done(static_cast<double>(reference.n_frames()) - compared);
-            failed = true;
+            Index before = first_failed;
+            while (static_cast<Index>(c) < before &&
+                   !first_failed.compare_exchange_weak(before, static_cast<Index>(c))) {
+            }
         }
     };
     options.execution.for_chunks(static_cast<Index>(references.size()), 1, [&](Index, Index begin, Index end) {
         for (Index c = begin; c < end && !stopped; ++c) {
-            if (failed && options.stop_at_failure) {
-                sums[static_cast<std::size_t>(c)].set_failed(references[static_cast<std::size_t>(c)],
-                                                             free[static_cast<std::size_t>(c)]);
-            } else {
+            if (!options.stop_at_failure || c < first_failed) {
                 score_case(static_cast<std::size_t>(c));
             }
         }
     });
+    if (options.stop_at_failure) {
+        for (auto c = static_cast<std::size_t>(first_failed) + 1; c < references.size(); ++c) {
+            sums[c].set_failed(references[c], free[c]);
+            statuses[c] = Status::interrupted;
+        }
+    }
     return detail::total_error(sums, std::move(statuses));
 }
 

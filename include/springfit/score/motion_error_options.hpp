@@ -13,7 +13,7 @@ struct MotionErrorOptions {
     /// A motion in time that would take more sub-steps times springs is stepped implicitly.
     double most_explicit_work = 1e9;
     int implicit_steps_per_frame = 16; ///< then, >= 1
-    /// Leave out what is not done once a case fails: those cases count as 1, too, and are `interrupted`.
+    /// Do not try again a case that fails, and leave out those after it: they count as 1, too, and are `interrupted`.
     bool stop_at_failure = false;
     Execution execution{}; ///< cases are independent of each other
 };

@@ -39,20 +39,24 @@ void warn_of_failures(const Candidate<Dim>& best, const RecordedCases<Dim, doubl
     }
 }
 
+/// True for a fit that moves no better than rest even where it was fitted.
+template <int Dim>
+bool has_learnt_nothing(const Candidate<Dim>& candidate) {
+    const bool is_fitted = candidate.acceleration.has_value() || candidate.trajectory.has_value();
+    return is_fitted && candidate.training.is_scored() && candidate.training.error > nothing_learnt;
+}
+
 /// Says what is bad where the verdict is, and what this input leaves to try.
 template <int Dim>
 void warn_of_error(Calibration<Dim>& result, const RecordedCases<Dim, double>& cases, const CalibrateOptions& options) {
     const Candidate<Dim>& best = result.best();
-    const bool is_fitted = best.acceleration.has_value() || best.trajectory.has_value();
-    if (is_fitted && best.training.is_scored() && best.training.error > nothing_learnt) {
-        result.verdict = Verdict::unusable;
+    if (has_learnt_nothing(best)) {
         result.warnings.push_back({.code = WarningCode::nothing_learnt,
                                    .about = best.name,
                                    .message = text("nothing was learnt: the error on the training cases is ",
                                                    best.training.error, ", as of a network that does not move"),
-                                   .advice =
-                                       "the forces that moved the body must be in the recording (gravity is one), "
-                                       "and its unit of time be the second",
+                                   .advice = "the forces that moved the body must be in the recording or be declared "
+                                             "(gravity is one), and its unit of time be the second",
                                    .values = {{"training_error", best.training.error}}});
     }
     if (is_usable(result.verdict)) {
@@ -112,7 +116,6 @@ bool add_candidates(const NetworkVariant<Dim>& variant, const RecordedCases<Dim,
     const Stopwatch fitting;
     auto made = make_candidates(variant.given, cases, options);
     result.warnings.insert(result.warnings.end(), made.warnings.begin(), made.warnings.end());
-    result.cases.stiffness_damping = made.stiffness_damping;
     result.seconds[0].second += fitting.seconds();
     const Stopwatch scoring;
     const bool all_scored = score(made.all, cases, options);
@@ -177,14 +180,16 @@ Calibration<Dim> calibrate(const std::vector<NetworkVariant<Dim>>& variants, Rec
     const auto remarks = warnings_on(best);
     result.warnings.insert(result.warnings.end(), remarks.begin(), remarks.end());
     result.parts = held_out_parts(best, cases.held_out);
-    result.verdict = unfinished ? Verdict::unfinished : verdict_on(best.held_out, options.limits);
+    result.verdict = unfinished                         ? Verdict::unfinished
+                     : detail::has_learnt_nothing(best) ? Verdict::unusable
+                                                        : verdict_on(best.held_out, options.limits);
     result.status = unfinished ? Status::interrupted : best.status();
     if (!unfinished) {
         detail::warn_of_failures(best, cases, result.warnings);
         detail::warn_of_error(result, cases, options);
     }
     result.stable_step = stable_step(best.network, cases.held_out.motions.front().clamped);
-    cases.stiffness_damping = result.cases.stiffness_damping;
+    cases.stiffness_damping = best.stiffness_damping;
     result.period = detail::period_of(variants.front().given.front().network, cases, result.warnings);
     result.cases = std::move(cases);
     return result;

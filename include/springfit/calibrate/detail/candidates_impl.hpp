@@ -62,7 +62,6 @@ public:
         : m_given(given), m_cases(cases), m_options(options), m_stiffness_damping(cases.stiffness_damping) {}
 
     [[nodiscard]] Candidates<Dim> make() {
-        m_result.stiffness_damping = m_stiffness_damping;
         for (const auto& named : m_given) {
             Candidate<Dim> candidate{.name = named.name, .network = named.network};
             candidate.n_clamped = named.n_clamped;
@@ -80,6 +79,7 @@ public:
         }
         const double energy = energy_in(m_result.all.front().network, m_cases.training.motions);
         for (auto& candidate : m_result.all) {
+            candidate.stiffness_damping = m_stiffness_damping;
             candidate.relative_stiffness = energy_in(candidate.network, m_cases.training.motions) / energy;
         }
         return std::move(m_result);
@@ -228,7 +228,6 @@ private:
         for (auto& candidate : m_result.all) {
             set_damping(candidate.network);
         }
-        m_result.stiffness_damping = m_stiffness_damping;
         return m_stiffness_damping;
     }
 
