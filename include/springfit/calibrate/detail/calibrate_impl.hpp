@@ -39,18 +39,19 @@ void warn_of_failures(const Candidate<Dim>& best, const RecordedCases<Dim, doubl
     }
 }
 
-/// True for a fit that moves no better than rest even where it was fitted.
+/// True for a fit that moves no better than rest where it was fitted, nor like the reference elsewhere.
 template <int Dim>
-bool has_learnt_nothing(const Candidate<Dim>& candidate) {
+bool has_learnt_nothing(const Candidate<Dim>& candidate, const VerdictLimits& limits) {
     const bool is_fitted = candidate.acceleration.has_value() || candidate.trajectory.has_value();
-    return is_fitted && candidate.training.is_scored() && candidate.training.error > nothing_learnt;
+    return is_fitted && candidate.training.is_scored() && candidate.training.error > nothing_learnt &&
+           !is_usable(verdict_on(candidate.held_out, limits));
 }
 
 /// Says what is bad where the verdict is, and what this input leaves to try.
 template <int Dim>
 void warn_of_error(Calibration<Dim>& result, const RecordedCases<Dim, double>& cases, const CalibrateOptions& options) {
     const Candidate<Dim>& best = result.best();
-    if (has_learnt_nothing(best)) {
+    if (has_learnt_nothing(best, options.limits)) {
         result.warnings.push_back({.code = WarningCode::nothing_learnt,
                                    .about = best.name,
                                    .message = text("nothing was learnt: the error on the training cases is ",
@@ -180,9 +181,9 @@ Calibration<Dim> calibrate(const std::vector<NetworkVariant<Dim>>& variants, Rec
     const auto remarks = warnings_on(best);
     result.warnings.insert(result.warnings.end(), remarks.begin(), remarks.end());
     result.parts = held_out_parts(best, cases.held_out);
-    result.verdict = unfinished                         ? Verdict::unfinished
-                     : detail::has_learnt_nothing(best) ? Verdict::unusable
-                                                        : verdict_on(best.held_out, options.limits);
+    result.verdict = unfinished                                         ? Verdict::unfinished
+                     : detail::has_learnt_nothing(best, options.limits) ? Verdict::unusable
+                                                                        : verdict_on(best.held_out, options.limits);
     result.status = unfinished ? Status::interrupted : best.status();
     if (!unfinished) {
         detail::warn_of_failures(best, cases, result.warnings);

@@ -26,13 +26,11 @@ bool score(std::vector<Candidate<Dim>>& candidates, const RecordedCases<Dim, dou
 
     Stage stage(options.progress, "score on motion", 2 * candidates.size());
     std::size_t part = 0;
-    double best = std::numeric_limits<double>::infinity();
     const auto scores_of = [&](const SpringNetwork<Dim, double>& network, const CaseSet<Dim, double>& set,
-                               const std::vector<std::size_t>& numbers) {
-        // Beside a good network nobody waits for one that fails to be tried again and again.
+                               const std::vector<std::size_t>& numbers, bool stop_at_failure) {
         auto found = motion_error(network, set.scenarios(), set.motions, stage.part(part++),
                                   {.max_iterations = detail::scoring_iterations,
-                                   .stop_at_failure = best < options.limits.fair,
+                                   .stop_at_failure = stop_at_failure,
                                    .execution = options.execution});
         if (stage.stopped()) {
             found.error = std::numeric_limits<double>::infinity();
@@ -45,15 +43,18 @@ bool score(std::vector<Candidate<Dim>>& candidates, const RecordedCases<Dim, dou
         order.push_back(&*candidate);
     }
     std::stable_partition(order.begin(), order.end(), [](const auto* candidate) { return candidate->trajectory; });
+    double best = std::numeric_limits<double>::infinity();
     for (auto* candidate : order) {
-        if (!stage.stopped()) {
-            candidate->held_out = scores_of(candidate->network, cases.held_out, all);
+        if (!stage.stopped()) { // beside a good network nobody waits for one that fails to be tried again and again
+            candidate->held_out = scores_of(candidate->network, cases.held_out, all, best < options.limits.fair);
             best = std::min(best, candidate->held_out.error);
         }
     }
     for (auto* candidate : order) {
         if (!sampled.empty() && !stage.stopped()) {
-            candidate->training = scores_of(candidate->network, sample, sampled);
+            const bool is_good = candidate->held_out.error < options.limits.fair;
+            candidate->training =
+                scores_of(candidate->network, sample, sampled, !is_good && best < options.limits.fair);
         }
     }
     return !stage.stopped();
