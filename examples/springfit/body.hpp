@@ -25,7 +25,7 @@ using AnyMesh = std::variant<springfit::Mesh<2, double, springfit::Tri3>, spring
 
 [[nodiscard]] int dimension_of(const AnyMesh& mesh);
 
-/// Reads or makes the mesh of a surface, an outline or a mesh file; says on stderr what it did.
+/// Reads or makes the mesh of a surface, an outline or a mesh file, in m; says on stderr what it did.
 /// Throws FileError or InvalidArgument.
 [[nodiscard]] AnyMesh read_mesh(const FitOptions& options, const springfit::ProgressCallback& progress);
 
@@ -43,6 +43,13 @@ struct FineMesh {
 
 /// True for the file of a recorded motion.
 [[nodiscard]] bool is_motion_file(const std::string& path);
+
+/// Names of files, patterns of the shell expanded. Throws FileError for one that nothing matches.
+[[nodiscard]] std::vector<std::string> expanded(const std::vector<std::string>& patterns);
+
+/// What `--unit` is, m, and `--time-unit`, s.
+[[nodiscard]] double metres(const std::string& unit);
+[[nodiscard]] double seconds(const std::string& unit);
 
 /// The mesh of a recorded motion. Throws FileError where it holds no cells of a kind that springs can be laid along.
 template <int Dim>

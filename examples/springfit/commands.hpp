@@ -19,7 +19,7 @@ constexpr int exit_poor = 3;
 /// Each returns the exit code: 0; `exit_poor` where the result is written but its verdict is poor or unusable;
 /// `exit_interrupted` where Ctrl-C ended it early with the best result so far written. Throws InvalidArgument or
 /// FileError for input that cannot be used; then nothing has been written.
-[[nodiscard]] int run_fit(const FitOptions& options);
+[[nodiscard]] int run_fit(FitOptions options);
 [[nodiscard]] int run_simulate(const SimulateOptions& options);
 
 } // namespace program

@@ -3,6 +3,8 @@
 
 #include <cstdio>
 
+#include <springfit/io/json.hpp>
+#include <springfit/motion/units.hpp>
 #include <springfit/score/embedded_error.hpp>
 
 #include "files.hpp"
@@ -11,9 +13,41 @@ namespace program {
 
 using namespace springfit;
 
+Values<double> read_masses(const std::string& path, Index n_nodes) {
+    Values<double> masses(n_nodes);
+    if (io::hdf5::File::is_hdf5(path)) {
+        const auto file = io::hdf5::File::open(path);
+        const io::hdf5::Shape expected{static_cast<hsize_t>(n_nodes)};
+        if (const auto found = file.shape("/mesh/mass"); found != expected) {
+            file.refuse("/mesh/mass", text("expected one mass for each of ", n_nodes, " nodes, found ",
+                                           io::hdf5::to_text(found)));
+        }
+        file.read("/mesh/mass", masses.data(), expected);
+    } else {
+        const io::Json model = io::read_json(path);
+        const io::Json mass = model.value(io::Json::json_pointer("/nodes/mass"), io::Json());
+        if (!mass.is_array() || static_cast<Index>(mass.size()) != n_nodes) {
+            throw FileError(path, text("/nodes/mass: expected one mass for each of ", n_nodes, " nodes, found ",
+                                       mass.is_array() ? text(mass.size()) : std::string(mass.type_name())));
+        }
+        for (Index i = 0; i < n_nodes; ++i) {
+            const io::Json& entry = mass[static_cast<std::size_t>(i)];
+            masses(i) = entry.is_number() ? entry.get<double>() : std::numeric_limits<double>::quiet_NaN();
+        }
+    }
+    for (Index i = 0; i < n_nodes; ++i) {
+        if (!(masses(i) > 0 && std::isfinite(masses(i)))) {
+            throw FileError(path, text("expected positive masses, kg, found ", masses(i), " at node ", i));
+        }
+    }
+    return masses;
+}
+
 template <int Dim>
-io::RecordedMotion<Dim, double> read_recorded(const std::string& path, std::vector<Warning>& warnings) {
+io::RecordedMotion<Dim, double> read_recorded(const std::string& path, const FitOptions& options,
+                                              std::vector<Warning>& warnings) {
     auto recorded = io::read_motion<Dim, double>(path);
+    recorded.motion = in_si_units(std::move(recorded.motion), metres(options.unit), seconds(options.time_unit));
     const auto warn = [&](std::string message) {
         warnings.push_back({.code = WarningCode::incomplete_recording,
                             .about = path,
@@ -25,6 +59,20 @@ io::RecordedMotion<Dim, double> read_recorded(const std::string& path, std::vect
         if (recorded.motion.n_frames() > 1) { // an equilibrium has none
             warn(path + ": " + column + " is not in the file and was differenced");
         }
+    }
+    if (const auto& gaps = recorded.motion.unobserved; !gaps.empty()) {
+        std::size_t n = 0;
+        for (const auto& frame : gaps) {
+            n += frame.size();
+        }
+        const double percent = 100 * static_cast<double>(n) /
+                               static_cast<double>(recorded.motion.n_frames() * recorded.motion.n_nodes());
+        warnings.push_back({.code = WarningCode::unobserved,
+                            .about = path,
+                            .message = text(path, ": ", n, " positions of nodes (", percent,
+                                            " %) are not in the file; they have no weight"),
+                            .advice = {},
+                            .values = {{"positions", static_cast<double>(n)}}});
     }
     if (!recorded.forces_recorded) {
         warn(path + ": external forces are not in the file and were taken as zero");
@@ -101,8 +149,8 @@ void print_table(const Calibration<Dim>& calibration) {
     std::printf("\n");
 }
 
-template io::RecordedMotion<2, double> read_recorded<2>(const std::string&, std::vector<Warning>&);
-template io::RecordedMotion<3, double> read_recorded<3>(const std::string&, std::vector<Warning>&);
+template io::RecordedMotion<2, double> read_recorded<2>(const std::string&, const FitOptions&, std::vector<Warning>&);
+template io::RecordedMotion<3, double> read_recorded<3>(const std::string&, const FitOptions&, std::vector<Warning>&);
 template void write_shown_motion<2>(io::OutputGroup&, const std::filesystem::path&, const io::MotionTopology&,
                                     const Calibration<2>&, const std::optional<FineSide<2>>&,
                                     std::vector<std::string>&);

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 
+#include <springfit/mesh/pieces.hpp>
 #include <springfit/parallel/tbb.hpp>
 #include <springfit/score/embedded_error.hpp>
 
@@ -70,6 +71,8 @@ void check(const FitOptions& options) {
     require(!options.zeta || options.damping == "ratio", "--zeta", "--damping ratio beside it",
             "--damping " + options.damping);
     const bool is_recorded = !options.references.empty() || is_motion_file(options.input);
+    require(!options.damping_ratio || !is_recorded || options.damping == "proportional", "--damping-ratio",
+            "--damping proportional beside it, of a recorded motion", "--damping " + options.damping);
     if (options.gravity) {
         require(is_recorded, "--gravity", "a recorded motion; the FEM reference has its own loads", "none");
         for (double g : *options.gravity) {
@@ -89,6 +92,9 @@ void check(const FitOptions& options) {
         refuse(options.deformation.has_value(), "--deformation");
         refuse(options.static_cases.has_value(), "--static-cases");
         refuse(options.strain.has_value(), "--strain");
+    } else {
+        require(options.mass_from.empty(), "--mass-from", "a recorded motion; the FEM reference has its own masses",
+                "none");
     }
     if (is_motion_file(options.input)) {
         require(!options.nodes, "--nodes", "a surface or an outline as INPUT", options.input);
@@ -126,7 +132,8 @@ CalibrateOptions calibrate_options(const FitOptions& options, const Execution& e
                                                 : DampingRule::proportional;
     take(options.zeta, how.zeta);
     how.exact_solver = exact_solver(options.exact_solver);
-    take(options.fit_seconds, how.matching_seconds);
+    how.matching_seconds = options.fit_seconds;
+    how.damping_ratio = options.damping_ratio;
     how.execution = execution;
     how.progress = progress;
     return how;
@@ -141,6 +148,7 @@ public:
         : m_options(options), m_mesh(mesh), m_fine_mesh(fine_mesh),
           m_how(calibrate_options(options, parallel::tbb(options.threads), progress)),
           m_body(discretise<Dim>(mesh, options)) {
+        print_pieces();
         std::printf("%lld nodes, %lld %s cells, %lld springs\n", static_cast<long long>(m_body.network.n_nodes()),
                     static_cast<long long>(m_body.topology.cells.cols()), m_body.cell_name.c_str(),
                     static_cast<long long>(m_body.network.n_springs()));
@@ -150,6 +158,9 @@ public:
         m_source.detail = {{"threads", options.threads}, {"damping", options.damping}};
         if (fine_mesh) {
             take_fine_mesh();
+        }
+        if (!options.mass_from.empty()) {
+            m_body.network.mass = read_masses(options.mass_from, m_body.network.n_nodes());
         }
         m_variants = variants_of<Dim>(mesh, options);
         for (auto& variant : m_variants) {
@@ -235,13 +246,15 @@ public:
         if (cases.interrupted && (cases.training.empty() || cases.held_out.empty())) {
             throw Interrupted();
         }
+        print_body(cases);
         auto calibration = calibrate(m_variants, std::move(cases), m_how);
         const Stopwatch at_fine;
         if (m_fine) {
             judge_fine_nodes(calibration);
             calibration.seconds.back().second += at_fine.seconds();
         }
-        print_body(calibration);
+        std::printf("\nthe springs: damping %.3g s times stiffness, %.2g %% of critical in the slowest motion\n",
+                    calibration.best().stiffness_damping, 100 * calibration.damping_ratio);
         print_table(calibration);
         if (m_fine) {
             const auto& judged = m_source.detail["reference_nodes"];
@@ -256,26 +269,51 @@ public:
         }
         write(calibration, folder, std::move(seconds));
         const Verdict verdict = calibration.verdict;
-        std::printf("verdict: %s (held-out error %.4f)\n", std::string(to_string(verdict)).c_str(),
-                    calibration.best().held_out.error);
+        const auto& held_out = calibration.best().held_out;
+        std::printf("verdict: %s (held-out error %.4f", std::string(to_string(verdict)).c_str(), held_out.error);
+        if (held_out.noise > 0) {
+            std::printf(", of which the noise makes %.4f and the model %.4f", held_out.noise, held_out.beside_noise());
+        }
+        std::printf(")\n");
         return calibration.status == Status::interrupted ? exit_interrupted : is_usable(verdict) ? 0 : exit_poor;
     }
 
 private:
-    void print_body(const Calibration<Dim>& calibration) const {
+    /// Says where the body falls apart: no force passes between its pieces.
+    void print_pieces() const {
+        const auto sizes = pieces(m_body.network.n_nodes(), m_body.network.springs);
+        if (sizes.size() < 2) {
+            return;
+        }
+        std::string list;
+        for (std::size_t p = 0; p < sizes.size() && p < 8; ++p) {
+            list += text(p == 0 ? "" : ", ", sizes[p]);
+        }
+        const Index n = n_coinciding(m_body.network.rest_positions);
+        std::fprintf(stderr, "%s: the body is in %zu pieces, of %s%s nodes; %lld points coincide with another%s\n",
+                     m_options.input.c_str(), sizes.size(), list.c_str(), sizes.size() > 8 ? ", ..." : "",
+                     static_cast<long long>(n), n > 0 ? ": merge them in the mesher where the pieces hold together" : "");
+    }
+
+    /// The body and the recording, before the long work: what is in another unit shows.
+    void print_body(const RecordedCases<Dim, double>& cases) const {
         const auto& rest = m_body.network.rest_positions;
         const Vector<Dim, double> size = rest.rowwise().maxCoeff() - rest.rowwise().minCoeff();
         std::string extent = text(size(0));
         for (int d = 1; d < Dim; ++d) {
             extent += text(" x ", size(d));
         }
-        std::printf("\nthe body: %s m, %.4g kg, slowest period %.4g s; damping %.3g s times stiffness\n",
-                    extent.c_str(), m_body.network.mass.sum(), calibration.period, calibration.cases.stiffness_damping);
-        const auto& shown = calibration.cases.held_out.motions.front();
-        if (shown.n_frames() > 1) {
-            std::printf("recorded: %.4g s in %lld frames\n", shown.times.back() - shown.times.front(),
-                        static_cast<long long>(shown.n_frames()));
+        const double period = slowest_period(m_variants.front().given.front().network, cases);
+        std::printf("the body: %s m, %.4g kg, slowest period about %.4g s\n", extent.c_str(),
+                    m_body.network.mass.sum(), period);
+        if (const double recorded = recorded_time(cases); recorded > 0) {
+            std::printf("recorded: %.4g s in %lld frames\n", recorded,
+                        static_cast<long long>(cases.held_out.motions.front().n_frames()));
         }
+        for (const Warning& warning : warnings_of_units(period, cases)) {
+            std::fprintf(stderr, "warning: %s\n", to_string(warning).c_str());
+        }
+        std::fflush(stdout);
     }
 
     void add_gravity(Motion<Dim, double>& motion) const {
@@ -363,13 +401,13 @@ int fit_dimension(std::optional<AnyMesh> mesh, const std::optional<FineMesh>& fi
     std::vector<Warning> warnings;
     std::vector<Motion<Dim, double>> motions;
     if (!mesh) {
-        auto input = read_recorded<Dim>(options.input, warnings);
+        auto input = read_recorded<Dim>(options.input, options, warnings);
         mesh = mesh_of<Dim>(input, options.input);
         motions.push_back(std::move(input.motion));
     }
     for (const auto& path : options.references) {
         require(io::read_motion_dimension(path) == Dim, "--reference", text("a motion of dimension ", Dim), path);
-        motions.push_back(read_recorded<Dim>(path, warnings).motion);
+        motions.push_back(read_recorded<Dim>(path, options, warnings).motion);
     }
     Fit<Dim> fit(options, *mesh, fine_mesh, progress);
     const Stopwatch recording;
@@ -380,7 +418,14 @@ int fit_dimension(std::optional<AnyMesh> mesh, const std::optional<FineMesh>& fi
 
 } // namespace
 
-int run_fit(const FitOptions& options) {
+int run_fit(FitOptions options) {
+    options.inputs = expanded(options.inputs);
+    options.input = options.inputs.front();
+    options.references = expanded(options.references);
+    options.references.insert(options.references.begin(), options.inputs.begin() + 1, options.inputs.end());
+    for (const auto& path : options.references) {
+        require(is_motion_file(path), "INPUT", "recorded motions (.xdmf .h5) after the first file", path);
+    }
     check(options);
     io::OutputFolder folder(options.out);
     Terminal terminal;

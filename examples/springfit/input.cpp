@@ -3,6 +3,8 @@
 
 #include <cstdio>
 
+#include <glob.h>
+
 #include <springfit/cgal/interpolation.hpp>
 #include <springfit/cgal/tetrahedralize.hpp>
 #include <springfit/cgal/triangulate.hpp>
@@ -57,17 +59,8 @@ void refuse_meshing_options(const FitOptions& options) {
     });
 }
 
-} // namespace
-
-bool is_motion_file(const std::string& path) {
-    return is_one_of(extension(path), {".xdmf", ".xmf", ".h5", ".hdf5"});
-}
-
-int dimension_of(const AnyMesh& mesh) {
-    return std::visit([](const auto& m) { return static_cast<int>(m.nodes.rows()); }, mesh);
-}
-
-AnyMesh read_mesh(const FitOptions& options, const ProgressCallback& progress) {
+/// The mesh of INPUT in the file's own unit.
+[[nodiscard]] AnyMesh read_as_it_is(const FitOptions& options, const ProgressCallback& progress) {
     const std::string kind = extension(options.input);
     if (!std::filesystem::exists(options.input)) {
         throw FileError(options.input, "no such file");
@@ -94,6 +87,50 @@ AnyMesh read_mesh(const FitOptions& options, const ProgressCallback& progress) {
             "one of .off .obj .stl .ply .poly .wkt .msh .mesh .node .vtk .xdmf .h5", options.input);
     refuse_meshing_options(options);
     return from_mesh_file(io::read_mesh(options.input));
+}
+
+} // namespace
+
+std::vector<std::string> expanded(const std::vector<std::string>& patterns) {
+    std::vector<std::string> files;
+    for (const std::string& pattern : patterns) {
+        if (pattern.find_first_of("*?[") == std::string::npos || std::filesystem::exists(pattern)) {
+            files.push_back(pattern);
+            continue;
+        }
+        ::glob_t found{};
+        const bool is_match = ::glob(pattern.c_str(), 0, nullptr, &found) == 0;
+        for (std::size_t f = 0; is_match && f < found.gl_pathc; ++f) {
+            files.emplace_back(found.gl_pathv[f]);
+        }
+        ::globfree(&found);
+        if (!is_match) {
+            throw FileError(pattern, "no such file");
+        }
+    }
+    return files;
+}
+
+double metres(const std::string& unit) {
+    return unit == "m" ? 1. : unit == "cm" ? 1e-2 : unit == "mm" ? 1e-3 : unit == "um" ? 1e-6 : 0.0254; // inch
+}
+
+double seconds(const std::string& unit) {
+    return unit == "s" ? 1. : unit == "ms" ? 1e-3 : 1e-6; // us
+}
+
+bool is_motion_file(const std::string& path) {
+    return is_one_of(extension(path), {".xdmf", ".xmf", ".h5", ".hdf5"});
+}
+
+int dimension_of(const AnyMesh& mesh) {
+    return std::visit([](const auto& m) { return static_cast<int>(m.nodes.rows()); }, mesh);
+}
+
+AnyMesh read_mesh(const FitOptions& options, const ProgressCallback& progress) {
+    AnyMesh mesh = read_as_it_is(options, progress);
+    std::visit([&](auto& m) { m.nodes *= metres(options.unit); }, mesh);
+    return mesh;
 }
 
 FineMesh read_fine_mesh(const FitOptions& options, const AnyMesh& coarse, const ProgressCallback& progress) {

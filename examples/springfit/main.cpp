@@ -25,9 +25,10 @@ CLI::Option* add_optional(CLI::App& app, const std::string& name, std::optional<
 }
 
 void declare_fit(CLI::App& app, program::FitOptions& options) {
-    app.add_option("INPUT", options.input,
+    app.add_option("INPUT", options.inputs,
                    "closed surface (.off .obj .stl .ply), outline (.poly .wkt), mesh (.msh .mesh .node .vtk), or a "
-                   "recorded motion (.xdmf .h5)")
+                   "recorded motion (.xdmf .h5); after it more recorded motions of the same nodes, patterns "
+                   "(\"motion_*.h5\"), too")
         ->required();
     app.add_option("--young", options.young, "Young's modulus, Pa")->required();
     app.add_option("--poisson", options.poisson, "Poisson's ratio, in (-1, 0.5)")->required();
@@ -49,13 +50,16 @@ void declare_fit(CLI::App& app, program::FitOptions& options) {
     add_optional(app, "--thickness", options.thickness, "thickness of a plane body or membrane, m (default 1)")
         ->group(reference);
     add_optional(app, "--damping-ratio", options.damping_ratio,
-                 "damping of the body's slowest motion, as a part of critical (default: light, so that it takes "
-                 "a quarter of the explicit step)")
+                 "damping of the body's slowest motion, as a part of critical (default: of the FEM so light that it takes "
+                 "a quarter of the explicit step, of recordings found with the fit)")
         ->group(reference);
     app.add_option("--reference", options.references,
                    "recorded motion of the same nodes (.xdmf .h5), in place of the FEM; may be given several times")
         ->group(reference);
 
+    app.add_option("--mass-from", options.mass_from,
+                   "file with the masses of the nodes, kg: a model.json, or HDF5 with /mesh/mass (default: by --density)")
+        ->group(reference);
     app.add_option_function<std::vector<double>>(
            "--gravity", [&options](const std::vector<double>& g) { options.gravity = g; },
            "acceleration that acted on the whole body in recorded motions, m/s^2, where their forces do not have it "
@@ -63,7 +67,16 @@ void declare_fit(CLI::App& app, program::FitOptions& options) {
         ->delimiter(',')
         ->group(reference);
 
+    app.add_option("--time-unit", options.time_unit, "unit of times in recorded motions")
+        ->check(CLI::IsMember({"s", "ms", "us"}))
+        ->capture_default_str()
+        ->group(reference);
+
     const std::string mesh = "Mesh";
+    app.add_option("--unit", options.unit, "unit of lengths in INPUT and recorded motions; --cell-size is in it, too")
+        ->check(CLI::IsMember({"m", "cm", "mm", "um", "inch"}))
+        ->capture_default_str()
+        ->group(mesh);
     auto* cell_size = add_optional(app, "--cell-size", options.cell_size, "size of the cells, m")->group(mesh);
     add_optional(app, "--nodes", options.nodes, "number of nodes to aim at (default 1000)")
         ->excludes(cell_size)
@@ -86,7 +99,7 @@ void declare_fit(CLI::App& app, program::FitOptions& options) {
     add_optional(app, "--training-cases", options.training_cases, "load cases the fit sees (default 6)")->group(cases);
     add_optional(app, "--held-out-cases", options.held_out_cases, "load cases it never sees (default 3)")->group(cases);
     add_optional(app, "--static-cases", options.static_cases,
-                 "equilibria, under three clamps, that matching of motion learns from (default 60)")
+                 "equilibria, under three clamps, that matching of motion learns from (default 36)")
         ->group(cases);
     add_optional(
         app, "--strain", options.strain,
@@ -127,7 +140,9 @@ void declare_fit(CLI::App& app, program::FitOptions& options) {
         ->group(fit);
     app.add_flag("--volume", options.volume, "cells that hold their volume, too; for nearly incompressible materials")
         ->group(fit);
-    add_optional(app, "--fit-seconds", options.fit_seconds, "time for matching motion, s (default 300)")->group(fit);
+    add_optional(app, "--fit-seconds", options.fit_seconds,
+                 "end matching of motion after this time, s; the result then depends on the machine (default: no limit)")
+        ->group(fit);
     app.add_option("--threads", options.threads, "threads, 0 for all")->capture_default_str()->group(fit);
 }
 

@@ -13,9 +13,13 @@ constexpr const char* default_material = "neo-hookean";
 
 /// What `springfit fit` was asked for. Values left out are chosen from the body.
 struct FitOptions {
-    std::string input;
+    std::vector<std::string> inputs;     ///< as given: patterns, INPUT first, recorded motions after it
+    std::string input;                   ///< the first file of those
     std::vector<std::string> references; ///< recorded motions instead of the FEM
+    std::string mass_from;               ///< file with the masses of the nodes; empty: they follow from the density
     std::string out;
+    std::string unit = "m";      ///< of lengths in files
+    std::string time_unit = "s"; ///< of times in recorded motions
 
     double young = 0;                    ///< Pa
     double poisson = 0;                  ///< -

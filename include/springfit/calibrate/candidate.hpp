@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <string>
@@ -24,10 +25,15 @@ struct NamedNetwork {
 /// The errors of a network on a set of cases.
 struct CaseScores {
     double error = std::numeric_limits<double>::infinity(); ///< of the whole set; infinite until it is scored in full
+    double noise = 0;                                       ///< error that the noise of the recording alone makes
     std::vector<std::size_t> cases;                         ///< numbers in the case set
     std::vector<double> errors;                             ///< of each of them; 1 where it failed
     std::vector<Status> statuses; ///< how each ended; `interrupted` where it was not reached, which counts as 1
 
+    /// The error beside the noise, sqrt(error^2 - noise^2): that of the network.
+    [[nodiscard]] double beside_noise() const {
+        return noise > 0 ? std::sqrt(std::max(error * error - noise * noise, 0.)) : error;
+    }
     [[nodiscard]] bool is_scored() const { return error < std::numeric_limits<double>::infinity(); }
     /// Cases that the network could not be simulated in.
     [[nodiscard]] std::size_t n_failed() const {
@@ -52,6 +58,8 @@ struct Candidate {
     Index n_clamped = 0;
     std::string caveat{};
     double stiffness_damping = 0; ///< beta of D = beta K, s: the reference's, or found where that is not known
+    int steps_per_frame = 0;      ///< of the integrator, where motions in time were matched
+    double step_error = 0;        ///< then, what halved steps change of the misfit, as a part of it
     double seconds = 0;           ///< of its fit, with the set-up of its problem
     CaseScores held_out{};
     CaseScores training{}; ///< on a sample of what fits learn from, where any was asked for

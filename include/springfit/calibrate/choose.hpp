@@ -76,12 +76,13 @@ template <int Dim>
     return {simplest, is_asked_for ? ChoiceRule::asked_for : ChoiceRule::least_held_out_error};
 }
 
-/// The verdict on a network by its errors on cases that no fit has seen.
+/// The verdict on a network by its errors, beside the recording's noise, on cases that no fit has seen.
 [[nodiscard]] inline Verdict verdict_on(const CaseScores& held_out, const VerdictLimits& limits = {}) {
-    return !(held_out.error < limits.unusable)                          ? Verdict::unusable
-           : !(held_out.error < limits.poor)                            ? Verdict::poor
-           : !(held_out.error < limits.fair) || held_out.n_failed() > 0 ? Verdict::fair
-                                                                        : Verdict::good;
+    const double error = held_out.beside_noise();
+    return !(error < limits.unusable)                          ? Verdict::unusable
+           : !(error < limits.poor)                            ? Verdict::poor
+           : !(error < limits.fair) || held_out.n_failed() > 0 ? Verdict::fair
+                                                               : Verdict::good;
 }
 
 /// Warnings about a candidate, for the user of its network.

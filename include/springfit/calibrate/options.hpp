@@ -47,6 +47,9 @@ struct CalibrateOptions {
     Method method = Method::automatic;
     DampingRule damping = DampingRule::proportional;
     double zeta = 0.05;         ///< of DampingRule::ratio, >= 0
+    /// Damping of the slowest motion, as a part of critical, in [0, 1), of DampingRule::proportional where cases do not
+    /// know theirs; none: it is found with the fit.
+    std::optional<double> damping_ratio{};
     ExactSolver exact_solver{}; ///< empty: `exact`
     bool one_pass = false; ///< Method::automatic makes a candidate of the dominant-term approximation's one pass, too
 
@@ -63,8 +66,9 @@ struct CalibrateOptions {
     int steps_per_frame = 0;          ///< of the integrator, where motions in time are matched; 0: so many that its own
                                       ///< error stays small beside what a good fit leaves (`detail::steps_per_frame`)
     int matching_iterations = 40;     ///< of matching of motion at most, >= 0
-    double matching_tolerance = 1e-3; ///< matching ends when iterations gain less than this part, > 0
-    double matching_seconds = 300;    ///< of matching of motion at most, > 0, of wall clock
+    double matching_tolerance = 0.02; ///< matching ends when two iterations gain less than this part, > 0
+    /// Of matching of motion at most, > 0, of wall clock: the result then depends on the machine. None: no limit.
+    std::optional<double> matching_seconds{};
 
     int scored_training_cases = 12; ///< at most, evenly spread, >= 0: what a fit has seen says little
     double near_equal = 1.2;        ///< of networks whose errors differ by less than this factor, the one with fewer

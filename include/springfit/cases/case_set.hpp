@@ -5,6 +5,7 @@
 #include <springfit/core/warning.hpp>
 #include <springfit/motion/replay.hpp>
 #include <springfit/motion/resample.hpp>
+#include <springfit/motion/smoothing.hpp>
 
 namespace springfit {
 
@@ -94,6 +95,24 @@ void validate(const RecordedCases<Dim, Scalar>& recorded, Index n_nodes) {
 
 namespace detail {
 
+/// Noise beside the motion, above which a recording is smoothed [our definition]; below it, the frames are as good.
+inline constexpr double least_noise = 0.003;
+
+/// Root mean square displacement of a coordinate of the nodes that were seen and are not clamped, m.
+template <int Dim, std::floating_point Scalar>
+Scalar mean_displacement(const Motion<Dim, Scalar>& motion) {
+    const FreeNodes free(motion.n_nodes(), motion.clamped);
+    Scalar sum = 0;
+    Scalar count = 0;
+    for (std::size_t t = 0; t < motion.positions.size(); ++t) {
+        for_observed(motion, t, free.nodes(), [&](int i) {
+            sum += (motion.positions[t].col(i) - motion.rest_positions.col(i)).squaredNorm();
+            count += Dim;
+        });
+    }
+    return count > 0 ? std::sqrt(sum / count) : Scalar(0);
+}
+
 /// True where two frames are the same beside how far the body has moved from rest.
 template <int Dim, std::floating_point Scalar>
 bool are_equal(const Points<Dim, Scalar>& a, const Points<Dim, Scalar>& b, const Points<Dim, Scalar>& rest) {
@@ -131,14 +150,15 @@ template <int Dim, std::floating_point Scalar>
 /// A motion of one frame, or of equal ones, is an equilibrium. Of several motions, and of several equilibria, the last
 /// quarter is held out, at least one; of a single motion the last third of its time where there is nothing else to hold
 /// out. Equilibria that repeat an earlier one are left out, and motions with uneven frames are resampled, both with a
-/// warning. Throws InvalidArgument for none, for a motion of fewer than 4 frames, and where nothing is left to judge
+/// warning. Of a motion with noise (`noise_level` above 0.3 % of its displacements), what is learnt from is smoothed, and
+/// what judges stays as it was recorded but starts from the smoothed state. Throws InvalidArgument for none, for a motion of fewer than 4 frames, and where nothing is left to judge
 /// by.
 template <int Dim, std::floating_point Scalar>
 [[nodiscard]] RecordedCases<Dim, Scalar> split_motions(std::vector<Motion<Dim, Scalar>> motions) {
     require(!motions.empty(), "motions", "at least one", "none");
     RecordedCases<Dim, Scalar> recorded;
     recorded.knows_damping = false;
-    const auto warn = [&](WarningCode code, const Motion<Dim, Scalar>& motion, const char* message) {
+    const auto warn = [&](WarningCode code, const Motion<Dim, Scalar>& motion, std::string_view message) {
         recorded.warnings.push_back({.code = code,
                                      .about = motion.name,
                                      .message = text(motion.name, ": ", message),
@@ -169,22 +189,37 @@ template <int Dim, std::floating_point Scalar>
         }
         in_time.push_back(std::move(motion));
     }
-    const auto keep = [&](CaseRole role, Motion<Dim, Scalar> motion) {
-        LoadCase<Dim, Scalar> load_case{.scenario = replay(motion)};
+    std::vector<Motion<Dim, Scalar>> estimated; // beneath the noise, of those in time
+    for (auto& motion : in_time) {
+        const Scalar noise = noise_level(motion);
+        const Scalar part = noise / detail::mean_displacement(motion);
+        if (part > Scalar(detail::least_noise)) {
+            motion.noise = noise;
+            const double percent = 100 * static_cast<double>(part);
+            warn(WarningCode::noisy_recording, motion,
+                 text("a noise of about ", noise, " m, ", percent,
+                      " % of its motion, is in its positions; it is smoothed to learn from"));
+        }
+        estimated.push_back(smoothed(motion, motion.noise));
+    }
+    const auto keep = [&](CaseRole role, Motion<Dim, Scalar> motion, const Motion<Dim, Scalar>& estimate) {
+        LoadCase<Dim, Scalar> load_case{.scenario = replay(estimate)};
         load_case.role = role;
-        recorded.add(std::move(load_case), std::move(motion));
+        recorded.add(std::move(load_case), role == CaseRole::training ? estimate : std::move(motion));
     };
-    for (auto* set : {&in_time, &at_rest}) {
-        const std::size_t n = set->size();
+    for (const bool is_in_time : {true, false}) {
+        auto& set = is_in_time ? in_time : at_rest;
+        const auto& estimates = is_in_time ? estimated : at_rest;
+        const std::size_t n = set.size();
         const std::size_t n_held_out = n > 1 ? std::max<std::size_t>(1, n / 4) : 0;
         for (std::size_t m = 0; m < n; ++m) {
-            if (n == 1 && set == &in_time && at_rest.size() < 2) { // nothing else to judge by
-                const auto& motion = set->front();
-                const Index split = 2 * motion.n_frames() / 3;
-                keep(CaseRole::training, excerpt(motion, 0, split));
-                keep(CaseRole::unseen_load, excerpt(motion, split, motion.n_frames()));
+            if (n == 1 && is_in_time && at_rest.size() < 2) { // nothing else to judge by
+                const Index last = set[0].n_frames();
+                const Index split = 2 * last / 3;
+                keep(CaseRole::training, excerpt(set[0], 0, split), excerpt(estimated[0], 0, split));
+                keep(CaseRole::unseen_load, excerpt(set[0], split, last), excerpt(estimated[0], split, last));
             } else {
-                keep(m + n_held_out < n ? CaseRole::training : CaseRole::unseen_load, std::move((*set)[m]));
+                keep(m + n_held_out < n ? CaseRole::training : CaseRole::unseen_load, set[m], estimates[m]);
             }
         }
     }

@@ -23,7 +23,7 @@ struct RecordCasesOptions {
     Scalar stiffness_damping = 0;          ///< else beta of D = beta K, s, >= 0
 
     // Equilibria, under several clamp sets, where the reference finds any.
-    int training_equilibria = 60; ///< >= 0; with 0 there are none to judge by either
+    int training_equilibria = 36; ///< >= 0; with 0 there are none to judge by either
     int held_out_loads = 6;       ///< of kinds and clamps that training has, >= 0
     int held_out_kinds = 5;       ///< of kinds that training never shows, >= 0
     int clamp_sets = 3;           ///< the specimen's own first, >= 1

@@ -22,6 +22,8 @@ enum class WarningCode {
     nothing_learnt,          ///< the fit does not move like what it was fitted to
     small_strain,            ///< the loads strain little, since the reference is linear
     resampled,               ///< a recorded motion had frames that are not evenly spaced
+    noisy_recording,         ///< a recorded motion has noise, and was smoothed
+    unobserved,              ///< a recorded motion does not have all nodes in all frames
     repeated_case,           ///< a recorded equilibrium was left out, since it repeats another
     other_unit,              ///< a recording is far longer or shorter than the body's own period
     incomplete_recording     ///< columns that a recording does not have were derived or taken as zero
@@ -41,6 +43,8 @@ enum class WarningCode {
     case WarningCode::nothing_learnt: return "nothing_learnt";
     case WarningCode::small_strain: return "small_strain";
     case WarningCode::resampled: return "resampled";
+    case WarningCode::noisy_recording: return "noisy_recording";
+    case WarningCode::unobserved: return "unobserved";
     case WarningCode::repeated_case: return "repeated_case";
     case WarningCode::other_unit: return "other_unit";
     case WarningCode::incomplete_recording: return "incomplete_recording";

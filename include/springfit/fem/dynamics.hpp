@@ -3,6 +3,7 @@
 
 #include <springfit/fem/model.hpp>
 #include <springfit/motion/state.hpp>
+#include <springfit/solve/corotated_solver.hpp>
 #include <springfit/solve/newton.hpp>
 
 namespace springfit::fem {
@@ -73,7 +74,8 @@ private:
     Stiffness<Dim, Scalar> m_stiffness; ///< over the free nodes
     Stiffness<Dim, Scalar> m_damping;   ///< K over all nodes, at m_damping_at; only with stiffness damping
     Nodes m_damping_at;
-    SymmetricSolver<Scalar> m_solver;
+    CorotatedSolver<Dim, Scalar> m_solver;
+    Scalar m_factor_step = 0; ///< time step that its factor is for, s; 0: there is none
     State<Dim, Scalar> m_last; ///< the state left by the last step, its acceleration that of the method (A)
     Scalar m_stiffest = 0;     ///< largest diagonal entry of the stiffness at rest, N/m
     int m_iterations = 0;

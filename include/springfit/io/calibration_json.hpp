@@ -122,6 +122,8 @@ template <int Dim>
     report.stage_seconds = calibration.seconds;
     report.held_out.error = best.held_out.error;
     report.training.error = best.training.error;
+    report.held_out.noise = best.held_out.noise;
+    report.training.noise = best.training.noise;
     Json fits = Json::object();
     for (const auto& candidate : calibration.candidates) {
         report.held_out.baselines.emplace_back(candidate.name, candidate.held_out.error);
@@ -132,6 +134,10 @@ template <int Dim>
                                      : Json::object();
         fit["relative_stiffness"] = candidate.relative_stiffness;
         fit["seconds"] = candidate.seconds;
+        if (candidate.steps_per_frame > 0) {
+            fit["steps_per_frame"] = candidate.steps_per_frame;
+            fit["time_step_error"] = candidate.step_error;
+        }
         if (!candidate.caveat.empty()) {
             fit["caveat"] = candidate.caveat;
         }
@@ -165,6 +171,8 @@ template <int Dim>
     report.detail["fits"] = std::move(fits);
     report.detail["reference"] = detail::reference_of(calibration, source);
     report.detail["seed"] = source.seed;
+    report.detail["period"] = calibration.period;
+    report.detail["damping_ratio"] = calibration.damping_ratio;
     report.detail["held_out_parts"] = std::move(parts);
     report.detail["warnings"] = std::move(warnings);
     return report;

@@ -14,8 +14,8 @@ namespace springfit::io {
 [[nodiscard]] Json read_json(const std::filesystem::path& path);
 
 /// Text with one line per member of an object, and arrays of numbers, however long, on one line. Numbers are the
-/// shortest that read back as the same double.
-[[nodiscard]] std::string json_text(const Json& value);
+/// shortest that read back as the same double. Members are in the order of their keys, but for `first`.
+[[nodiscard]] std::string json_text(const Json& value, std::string_view first = {});
 
 /// A place inside a JSON file: every question that it cannot answer is a FileError that names file and JSON pointer,
 /// `model.json: /springs/stiffness/3: expected a number, found null`.

@@ -19,6 +19,7 @@ using NamedNumbers = std::vector<std::pair<std::string, double>>;
 /// Motion errors sqrt(sum |x - x_ref|^2 / sum |x_ref - x_rest|^2) over the free nodes, frames and cases of a set.
 struct MotionErrors {
     double error = std::numeric_limits<double>::quiet_NaN(); ///< of the model that was returned; NaN: the set is empty
+    double noise = 0;                                        ///< the part that noise of recordings makes; 0: none
     NamedNumbers baselines;                                  ///< of every candidate, by method
 };
 
@@ -68,7 +69,12 @@ inline void make_finite(Json& value, const std::string& pointer, std::vector<std
 /// The report as JSON; an infinite or undefined number becomes null, with a warning that names it.
 [[nodiscard]] inline Json report_json(const Report& report) {
     const auto errors = [](const MotionErrors& set) {
-        return Json{{"error", set.error}, {"baselines", detail::named_numbers_to_json(set.baselines)}};
+        Json json{{"error", set.error}, {"baselines", detail::named_numbers_to_json(set.baselines)}};
+        if (set.noise > 0) { // error^2 = noise^2 + model^2
+            json["noise"] = set.noise;
+            json["model"] = std::sqrt(std::max(set.error * set.error - set.noise * set.noise, 0.));
+        }
+        return json;
     };
     Json json;
     json["format"] = "springfit-report";
@@ -90,9 +96,9 @@ inline void make_finite(Json& value, const std::string& pointer, std::vector<std
     return json;
 }
 
-/// Puts `report.json` under the name `path` into a group of files. Throws FileError.
+/// Puts `report.json` under the name `path` into a group of files, the verdict first. Throws FileError.
 inline void write_report(OutputGroup& outputs, const std::filesystem::path& path, const Report& report) {
-    outputs.write(path, json_text(report_json(report)));
+    outputs.write(path, json_text(report_json(report), "verdict"));
 }
 
 } // namespace springfit::io

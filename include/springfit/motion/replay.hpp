@@ -24,7 +24,12 @@ template <int Dim, std::floating_point Scalar>
                                part(motion.positions),
                                part(motion.velocities),
                                part(motion.accelerations),
-                               part(motion.external_forces)};
+                               part(motion.external_forces),
+                               {},
+                               motion.noise};
+    if (!motion.unobserved.empty()) {
+        result.unobserved = part(motion.unobserved);
+    }
     for (Scalar& time : result.times) {
         time -= motion.times[static_cast<std::size_t>(first)];
     }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <springfit/motion/motion.hpp>
 
@@ -56,6 +57,11 @@ template <int Dim, std::floating_point Scalar>
         result.velocities[t] = 6 * s * (1 - s) / gap * (xb - xa) + (1 - s) * (1 - 3 * s) * va + s * (3 * s - 2) * vb;
         result.accelerations[t] = linear(motion.accelerations);
         result.external_forces[t] = linear(motion.external_forces);
+        if (!motion.unobserved.empty()) { // what either frame lacks
+            result.unobserved[t].clear();
+            std::set_union(motion.unobserved[a].begin(), motion.unobserved[a].end(), motion.unobserved[b].begin(),
+                           motion.unobserved[b].end(), std::back_inserter(result.unobserved[t]));
+        }
     }
     return result;
 }

@@ -10,7 +10,7 @@ namespace springfit {
 
 /// The error of motions beside their references.
 struct MotionError {
-    /// sqrt( sum |x - x_ref|^2 / sum |x_ref - x_rest|^2 ) over the free nodes, frames and cases of the set: 0 is the
+    /// sqrt( sum |x - x_ref|^2 / sum |x_ref - x_rest|^2 ) over the free nodes that were seen, frames and cases of the set: 0 is the
     /// reference itself, 1 as bad as not moving at all. A case that cannot be simulated to its end counts as 1.
     double error = 0;
     Status status = Status::converged; ///< of the first case that failed; without one, `interrupted` where it was
@@ -25,21 +25,23 @@ struct SquaredDistances {
     double from_reference = 0;
     double of_reference = 0;
 
+    /// A frame of the reference, beside positions.
     template <int Dim, std::floating_point Scalar>
-    void add(const Points<Dim, Scalar>& positions, const Points<Dim, Scalar>& reference,
-             const Points<Dim, Scalar>& rest_positions, const FreeNodes& free) {
-        for (int i : free.nodes()) {
-            from_reference += (positions.col(i) - reference.col(i)).template cast<double>().squaredNorm();
-            of_reference += (reference.col(i) - rest_positions.col(i)).template cast<double>().squaredNorm();
-        }
+    void add(const Points<Dim, Scalar>& positions, const Motion<Dim, Scalar>& reference, std::size_t frame,
+             const FreeNodes& free) {
+        const auto& there = reference.positions[frame];
+        for_observed(reference, frame, free.nodes(), [&](int i) {
+            from_reference += (positions.col(i) - there.col(i)).template cast<double>().squaredNorm();
+            of_reference += (there.col(i) - reference.rest_positions.col(i)).template cast<double>().squaredNorm();
+        });
     }
 
     /// As if the network had not moved.
     template <int Dim, std::floating_point Scalar>
     void set_failed(const Motion<Dim, Scalar>& reference, const FreeNodes& free) {
         *this = {};
-        for (const auto& positions : reference.positions) {
-            add<Dim, Scalar>(reference.rest_positions, positions, reference.rest_positions, free);
+        for (std::size_t t = 0; t < reference.positions.size(); ++t) {
+            add(reference.rest_positions, reference, t, free);
         }
     }
 
@@ -93,8 +95,7 @@ template <int Dim, std::floating_point Scalar>
                 sums[c].set_failed(references[c], free);
                 break;
             }
-            sums[c].template add<Dim, Scalar>(motions[c].positions[t], references[c].positions[t],
-                                              references[c].rest_positions, free);
+            sums[c].add(motions[c].positions[t], references[c], t, free);
         }
     }
     return detail::total_error(sums, std::move(statuses));
@@ -153,7 +154,7 @@ motion_error(const SpringNetwork<Dim, Scalar>& network, const std::vector<Scenar
                 }
                 compared = 0;
             }
-            sums[c].template add<Dim, Scalar>(positions, reference.positions[frame], reference.rest_positions, free[c]);
+            sums[c].add(positions, reference, frame, free[c]);
             compared += 1;
             return add_done(1);
         };

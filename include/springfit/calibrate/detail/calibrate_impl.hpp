@@ -15,8 +15,28 @@ namespace detail {
 /// Error on the training cases above which a fit has learnt nothing; 1 is that of not moving.
 inline constexpr double nothing_learnt = 0.9;
 
-/// Iterations of matching for a variant that is not the last: most of what there is to gain comes in the first.
-inline constexpr int iterations_of_a_try = 12;
+/// Iterations of matching where several variants are tried: most of what there is to gain comes in the first.
+inline constexpr int iterations_of_a_try = 8;
+
+/// The cases that a try learns from: a third of the equilibria, of every clamp set, where there are many.
+template <int Dim>
+RecordedCases<Dim, double> cases_of_a_try(const RecordedCases<Dim, double>& cases) {
+    constexpr std::size_t many = 18;
+    std::vector<std::size_t> kept;
+    std::size_t n_equilibria = 0;
+    for (std::size_t c = 0; c < cases.training.size(); ++c) {
+        const std::size_t turn = cases.training.is_static(c) ? n_equilibria++ % 9 : 0; // clamp sets take turns of 3
+        if (turn % 4 == 0) {
+            kept.push_back(c);
+        }
+    }
+    if (n_equilibria < many) {
+        return cases;
+    }
+    RecordedCases<Dim, double> fewer = cases;
+    fewer.training = cases.training.subset(kept);
+    return fewer;
+}
 
 /// Names the held-out cases that the returned network fails in.
 template <int Dim>
@@ -86,36 +106,21 @@ void warn_of_error(Calibration<Dim>& result, const RecordedCases<Dim, double>& c
          .values = {{"held_out_error", best.held_out.error}, {"limit", options.limits.poor}}});
 }
 
-/// The slowest period of the body as a closed form has it, s. Recorded motions that are far longer or shorter are
-/// remarked on.
+/// Makes the candidates of a variant from the cases in `learnt`, and scores them. Returns false where the callback ended
+/// it.
 template <int Dim>
-double period_of(const SpringNetwork<Dim, double>& network, const RecordedCases<Dim, double>& cases,
-                 std::vector<Warning>& warnings) {
-    const auto& first = cases.held_out.motions.front();
-    const double omega = lowest_frequency(network, first.clamped).omega;
-    if (!(omega > 0)) {
-        return 0;
-    }
-    const double period = 2 * std::numbers::pi / omega;
-    const double recorded = first.n_frames() > 1 ? first.times.back() - first.times.front() : period;
-    constexpr double far = 100; // our definition: units are off by 1000
-    if (cases.period == 0 && (recorded > far * period || recorded < period / far)) {
-        warnings.push_back(
-            {.code = WarningCode::other_unit,
-             .about = first.name,
-             .message = text("the recording lasts ", recorded, " s, the body's slowest period is about ", period, " s"),
-             .advice = "lengths must be in m and times in s",
-             .values = {{"recorded", recorded}, {"period", period}}});
-    }
-    return period;
-}
-
-/// Makes and scores the candidates of a variant. Returns false where the callback ended it.
-template <int Dim>
-bool add_candidates(const NetworkVariant<Dim>& variant, const RecordedCases<Dim, double>& cases,
-                    const CalibrateOptions& options, Calibration<Dim>& result) {
+bool add_candidates(const NetworkVariant<Dim>& variant, const RecordedCases<Dim, double>& learnt,
+                    const RecordedCases<Dim, double>& cases, const CalibrateOptions& options,
+                    Calibration<Dim>& result) {
     const Stopwatch fitting;
-    auto made = make_candidates(variant.given, cases, options);
+    auto made = make_candidates(variant.given, learnt, options);
+    if (!result.candidates.empty()) { // cells without stiffness: the same networks as before
+        std::erase_if(made.all, [](const auto& candidate) {
+            const auto& network = candidate.network;
+            return network.n_cells() > 0 && !(network.volume_stiffness.array() > 0).any() && !candidate.trajectory &&
+                   !candidate.acceleration;
+        });
+    }
     result.warnings.insert(result.warnings.end(), made.warnings.begin(), made.warnings.end());
     result.seconds[0].second += fitting.seconds();
     const Stopwatch scoring;
@@ -130,23 +135,29 @@ bool add_candidates(const NetworkVariant<Dim>& variant, const RecordedCases<Dim,
     return all_scored && !made.interrupted;
 }
 
-/// Matches motion to the end for the chosen candidate, which a try ended early. Returns false where the callback ended
+/// Goes on with the matching of the chosen candidate, which a try ended early. Returns false where the callback ended
 /// it.
 template <int Dim>
-bool finish_try(const NetworkVariant<Dim>& variant, const RecordedCases<Dim, double>& cases, CalibrateOptions options,
-                Calibration<Dim>& result) {
-    options.method = Method::trajectory;
-    Calibration<Dim> finished;
-    finished.seconds = {{"fit", 0.}, {"score", 0.}};
-    const bool all_done = add_candidates(variant, cases, options, finished);
-    result.seconds[0].second += finished.seconds[0].second;
-    result.seconds[1].second += finished.seconds[1].second;
+bool finish_try(const NetworkVariant<Dim>& variant, const RecordedCases<Dim, double>& cases,
+                const CalibrateOptions& options, Calibration<Dim>& result) {
     auto& best = result.candidates[result.choice.candidate];
-    auto& found = finished.candidates.back();
-    if (found.trajectory && found.held_out.error <= best.held_out.error) {
+    const Stopwatch fitting;
+    auto made = CandidateMaker<Dim>(variant.given, cases, options).go_on(best);
+    made.all.erase(made.all.begin(), made.all.end() - 1);
+    result.seconds[0].second += fitting.seconds();
+    auto& found = made.all.front();
+    if (!found.trajectory) {
+        return !made.interrupted;
+    }
+    const Stopwatch scoring;
+    const bool all_scored = score(made.all, cases, options);
+    result.seconds[1].second += scoring.seconds();
+    if (found.held_out.error <= best.held_out.error) {
+        found.name = best.name;
+        found.seconds += best.seconds;
         best = std::move(found);
     }
-    return all_done;
+    return all_scored && !made.interrupted;
 }
 
 } // namespace detail
@@ -158,14 +169,20 @@ Calibration<Dim> calibrate(const std::vector<NetworkVariant<Dim>>& variants, Rec
     Calibration<Dim> result;
     result.warnings = cases.warnings;
     result.seconds = {{"fit", 0.}, {"score", 0.}};
+    require(!variants.front().given.empty(), "given", "a network to start from", "none");
+    result.period = slowest_period(variants.front().given.front().network, cases);
+    const auto of_units = warnings_of_units(result.period, cases);
+    result.warnings.insert(result.warnings.end(), of_units.begin(), of_units.end());
     bool unfinished = cases.interrupted;
     std::vector<std::size_t> variant_of; // the candidates
+    const auto fewer = variants.size() > 1 ? detail::cases_of_a_try(cases) : RecordedCases<Dim, double>{};
     for (std::size_t v = 0; v < variants.size(); ++v) {
         auto how = options;
-        if (v + 1 < variants.size()) {
+        if (variants.size() > 1) {
             how.matching_iterations = std::min(how.matching_iterations, detail::iterations_of_a_try);
         }
-        unfinished = !detail::add_candidates(variants[v], cases, how, result) || unfinished;
+        const auto& learnt = variants.size() > 1 ? fewer : cases;
+        unfinished = !detail::add_candidates(variants[v], learnt, cases, how, result) || unfinished;
         variant_of.resize(result.candidates.size(), v);
         result.choice = choose(result.candidates, options);
         if (unfinished || verdict_on(result.best().held_out, options.limits) == Verdict::good) {
@@ -173,8 +190,7 @@ Calibration<Dim> calibrate(const std::vector<NetworkVariant<Dim>>& variants, Rec
         }
     }
     const std::size_t chosen = variant_of[result.choice.candidate];
-    if (!unfinished && chosen + 1 < variants.size() && result.best().trajectory &&
-        result.best().status() == Status::iteration_limit) {
+    if (!unfinished && variants.size() > 1 && result.best().trajectory) {
         unfinished = !detail::finish_try(variants[chosen], cases, options, result);
     }
     const Candidate<Dim>& best = result.best();
@@ -191,7 +207,8 @@ Calibration<Dim> calibrate(const std::vector<NetworkVariant<Dim>>& variants, Rec
     }
     result.stable_step = stable_step(best.network, cases.held_out.motions.front().clamped);
     cases.stiffness_damping = best.stiffness_damping;
-    result.period = detail::period_of(variants.front().given.front().network, cases, result.warnings);
+    result.damping_ratio =
+        result.period > 0 ? std::numbers::pi * best.stiffness_damping / result.period : 0.;
     result.cases = std::move(cases);
     return result;
 }

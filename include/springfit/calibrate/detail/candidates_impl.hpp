@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include <springfit/calibrate/candidates.hpp>
+#include <springfit/calibrate/detail/windows_in_time.hpp>
 #include <springfit/core/stage.hpp>
 #include <springfit/fit/acceleration/dominant_term.hpp>
 #include <springfit/fit/acceleration/objective.hpp>
@@ -32,36 +33,50 @@ double energy_in(const SpringNetwork<Dim, double>& network, const std::vector<Mo
     return energy;
 }
 
-/// Steps of the implicit midpoint rule in a frame by which a window's phase is off by less than 0.01, 8 at most. At a
-/// frequency omega the rule is behind by (omega h)^3 / 12 a step; omega is that of the motion, |a| / |v| in the mean.
-template <int Dim>
-int steps_per_frame(const std::vector<Motion<Dim, double>>& motions, int horizon) {
-    double most = 1;
-    for (const auto& motion : motions) {
-        double a = 0, v = 0;
-        for (std::size_t t = 0; t < motion.times.size() && motion.n_frames() > 1; ++t) {
-            a += motion.accelerations[t].squaredNorm();
-            v += motion.velocities[t].squaredNorm();
-        }
-        if (v > 0) {
-            const auto frames = static_cast<double>(motion.n_frames() - 1);
-            const double angle = std::sqrt(a / v) * (motion.times.back() - motion.times.front()) / frames;
-            const double n = horizon > 0 ? std::min<double>(horizon, frames) : frames;
-            most = std::max(most, std::sqrt(n * angle * angle * angle / 12 / 0.01));
-        }
-    }
-    return static_cast<int>(std::ceil(std::min(most, 8.)));
-}
-
 /// Makes candidates, one kind after another.
 template <int Dim>
 class CandidateMaker {
 public:
     CandidateMaker(const std::vector<NamedNetwork<Dim>>& given, const RecordedCases<Dim, double>& cases,
                    const CalibrateOptions& options)
-        : m_given(given), m_cases(cases), m_options(options), m_stiffness_damping(cases.stiffness_damping) {}
+        : m_given(given), m_cases(cases), m_options(options), m_stiffness_damping(cases.stiffness_damping),
+          m_knows_damping(cases.knows_damping) {}
 
     [[nodiscard]] Candidates<Dim> make() {
+        take_given();
+        const Method method = m_options.method;
+        // Whoever cut the recording short does not wait for the long fit.
+        if (method == Method::trajectory || (matches_motion(method) && !m_cases.interrupted)) {
+            try {
+                match_motion();
+            } catch (const InvalidArgument& error) { // as of a recording with uneven frames
+                m_result.warnings.push_back({.code = WarningCode::motion_not_matched,
+                                             .about = "trajectory",
+                                             .message = text("motion is not matched: ", error.what()),
+                                             .advice = {},
+                                             .values = {}});
+            }
+        }
+        if (method != Method::closed_form && method != Method::trajectory && !m_result.interrupted) {
+            fit_accelerations();
+        }
+        compare();
+        return std::move(m_result);
+    }
+
+    /// The same given networks, and the matching of a candidate of theirs gone on with.
+    [[nodiscard]] Candidates<Dim> go_on(const Candidate<Dim>& candidate) {
+        m_start = candidate.trajectory->theta;
+        m_stiffness_damping = candidate.stiffness_damping;
+        m_knows_damping = true;
+        take_given();
+        match_motion();
+        compare();
+        return std::move(m_result);
+    }
+
+private:
+    void take_given() {
         for (const auto& named : m_given) {
             Candidate<Dim> candidate{.name = named.name, .network = named.network};
             candidate.n_clamped = named.n_clamped;
@@ -69,23 +84,17 @@ public:
             set_damping(candidate.network);
             m_result.all.push_back(std::move(candidate));
         }
-        const Method method = m_options.method;
-        // Whoever cut the recording short does not wait for the long fit.
-        if (method == Method::trajectory || (matches_motion(method) && !m_cases.interrupted)) {
-            match_motion();
-        }
-        if (method != Method::closed_form && method != Method::trajectory && !m_result.interrupted) {
-            fit_accelerations();
-        }
+    }
+
+    /// Tells all candidates what they have in common, and how stiff each is.
+    void compare() {
         const double energy = energy_in(m_result.all.front().network, m_cases.training.motions);
         for (auto& candidate : m_result.all) {
             candidate.stiffness_damping = m_stiffness_damping;
             candidate.relative_stiffness = energy_in(candidate.network, m_cases.training.motions) / energy;
         }
-        return std::move(m_result);
     }
 
-private:
     void set_damping(SpringNetwork<Dim, double>& network) const {
         network.damping = m_options.damping == DampingRule::ratio
                               ? mass_stiffness_damping(network, m_options.zeta)
@@ -138,123 +147,83 @@ private:
 
     void match_motion() {
         SpringNetwork<Dim, double> prior = m_options.start ? m_result.all[*m_options.start].network : nearest();
+        const auto motions = m_cases.training.subset(learnt_from(true)).motions;
+        const bool in_time =
+            std::any_of(motions.begin(), motions.end(), [](const auto& motion) { return motion.n_frames() > 1; });
         TrajectoryOptions how;
         how.execution = m_options.execution;
         how.prior_weight = m_options.prior_weight;
-        const auto cases = m_cases.training.subset(learnt_from(true));
-        const bool in_time = std::any_of(cases.motions.begin(), cases.motions.end(),
-                                         [](const auto& motion) { return motion.n_frames() > 1; });
         if (in_time) {
             how.horizon = m_options.horizon;
             how.steps_per_frame =
-                m_options.steps_per_frame > 0 ? m_options.steps_per_frame : steps_per_frame(cases.motions, how.horizon);
+                m_options.steps_per_frame > 0 ? m_options.steps_per_frame : steps_per_frame(motions, how.horizon);
             how.parameters.damping.fit = m_options.damping == DampingRule::fitted && (prior.damping.array() > 0).any();
+        }
+        Stage stage(m_options.progress, "fit trajectory");
+        if (in_time && m_options.damping == DampingRule::proportional && !m_knows_damping) {
+            m_stiffness_damping = find_damping(prior, motions, how, m_options.damping_ratio, stage.part());
+            for (auto& candidate : m_result.all) {
+                set_damping(candidate.network);
+            }
+            set_damping(prior);
         }
         if (m_options.damping == DampingRule::proportional) {
             how.parameters.damping_per_stiffness = m_stiffness_damping;
         }
-        Stage stage(m_options.progress, "fit trajectory");
-        try {
-            if (in_time && m_options.damping == DampingRule::proportional && !m_cases.knows_damping) {
-                how.parameters.damping_per_stiffness = find_damping(prior, cases, how, stage);
-                set_damping(prior);
-            }
-            const TrajectoryProblem<Dim> problem(prior, cases.motions, how);
-            GaussNewtonOptions engine;
-            engine.max_iterations = m_options.matching_iterations;
-            engine.tolerance = m_options.matching_tolerance;
-            bool out_of_time = false;
-            engine.progress = [&, report = stage.part()](const Progress& progress) {
-                out_of_time = stage.seconds() > m_options.matching_seconds;
-                return report(progress) && !out_of_time;
-            };
-            Candidate<Dim> candidate{.name = "trajectory", .network = prior};
-            auto& report = candidate.trajectory.emplace(gauss_newton(problem, engine));
+        while (true) {
+            std::optional<Candidate<Dim>> candidate = matched(prior, motions, how, stage);
             m_result.interrupted = stage.stopped();
-            if (!usable(report.status)) {
+            if (!candidate) {
                 return;
             }
-            if (report.status == Status::interrupted && !stage.stopped()) {
-                report.status = Status::iteration_limit; // its time is a budget like another
+            if (in_time) { // halved steps tell the error of the integrator
+                candidate->steps_per_frame = how.steps_per_frame;
+                auto finer = how;
+                finer.steps_per_frame *= 2;
+                const double misfit = candidate->trajectory->misfit;
+                candidate->step_error = std::abs(window_misfit(candidate->network, motions, finer) / misfit - 1);
+                const bool is_last = m_options.steps_per_frame > 0 || finer.steps_per_frame > most_steps_per_frame;
+                if (candidate->step_error > step_error_limit && !is_last && !stage.stopped()) {
+                    how = finer;
+                    continue;
+                }
             }
-            apply(problem, report, candidate.network);
-            if (m_options.damping == DampingRule::ratio) {
-                set_damping(candidate.network);
-            }
-            candidate.data_share.resize(prior.n_springs());
-            for (Index e = 0; e < prior.n_springs(); ++e) {
-                candidate.data_share(e) =
-                    report.data_share(problem.parameters().unknown(MotionParameter::stiffness, e));
-            }
-            candidate.seconds = stage.seconds();
-            m_result.all.push_back(std::move(candidate));
-        } catch (const InvalidArgument& error) { // as of a recording with uneven frames
-            m_result.warnings.push_back({.code = WarningCode::motion_not_matched,
-                                         .about = "trajectory",
-                                         .message = text("motion is not matched: ", error.what()),
-                                         .advice = {},
-                                         .values = {}});
+            candidate->seconds = stage.seconds();
+            m_result.all.push_back(std::move(*candidate));
+            return;
         }
     }
 
-    /// Finds the beta of D = beta K that is best in the windows of the training motions: stiffness is matched without
-    /// damping first; 0 where none gains a tenth. (Whole motions out of phase would call for damping.) All get it.
-    double find_damping(SpringNetwork<Dim, double> network, const CaseSet<Dim, double>& cases, TrajectoryOptions how,
-                        Stage& stage) {
-        how.parameters.damping_per_stiffness = 0;
-        network.damping.setZero();
-        const TrajectoryProblem<Dim> problem(network, cases.motions, how);
+    /// The prior, matched to motions; none where nothing usable came about.
+    [[nodiscard]] std::optional<Candidate<Dim>> matched(const SpringNetwork<Dim, double>& prior,
+                                                        const std::vector<Motion<Dim, double>>& motions,
+                                                        const TrajectoryOptions& how, Stage& stage) const {
+        const TrajectoryProblem<Dim> problem(prior, motions, how);
         GaussNewtonOptions engine;
-        engine.max_iterations = 12;
-        engine.tolerance = 0.01;
-        engine.progress = stage.part();
-        if (const auto report = gauss_newton(problem, engine); usable(report.status)) {
-            apply(problem, report, network);
-        }
-        const auto first = std::find_if(cases.motions.begin(), cases.motions.end(),
-                                        [](const auto& motion) { return motion.n_frames() > 1; });
-        const double omega = lowest_frequency(network, first->clamped).omega;
-        if (!(omega > 0)) {
-            return 0;
-        }
-        const auto misfit = [&](double beta) {
-            how.parameters.damping_per_stiffness = beta;
-            network.damping = stiffness_proportional_damping(network, beta);
-            const TrajectoryProblem<Dim> damped(network, cases.motions, how);
-            return gauss_newton(damped, {.max_iterations = 0}).misfit_start;
+        engine.start = m_start;
+        engine.max_iterations = m_options.matching_iterations;
+        engine.tolerance = m_options.matching_tolerance;
+        engine.progress = [&, report = stage.part()](const Progress& progress) {
+            const bool is_late = m_options.matching_seconds && stage.seconds() > *m_options.matching_seconds;
+            return report(progress) && !is_late;
         };
-        const auto [ratio, least] = least_misfit([&](double zeta) { return misfit(2 * zeta / omega); });
-        m_stiffness_damping = least < 0.9 * misfit(0) ? 2 * ratio / omega : 0.;
-        for (auto& candidate : m_result.all) {
+        Candidate<Dim> candidate{.name = "trajectory", .network = prior};
+        auto& report = candidate.trajectory.emplace(gauss_newton(problem, engine));
+        if (!usable(report.status)) {
+            return std::nullopt;
+        }
+        if (report.status == Status::interrupted && !stage.stopped()) {
+            report.status = Status::iteration_limit; // its time is a budget like another
+        }
+        apply(problem, report, candidate.network);
+        if (m_options.damping == DampingRule::ratio) {
             set_damping(candidate.network);
         }
-        return m_stiffness_damping;
-    }
-
-    /// The ratio of critical damping in [0.001, 0.5] with the least misfit, and that, by golden sections of its
-    /// logarithm.
-    template <class Misfit>
-    static std::pair<double, double> least_misfit(const Misfit& misfit) {
-        constexpr double golden = 0.6180339887498949;
-        double low = std::log(0.001), high = std::log(0.5);
-        double a = high - golden * (high - low), b = low + golden * (high - low);
-        double at_a = misfit(std::exp(a)), at_b = misfit(std::exp(b));
-        for (int section = 0; section < 10; ++section) {
-            if (at_a < at_b) {
-                high = b;
-                b = a;
-                at_b = at_a;
-                a = high - golden * (high - low);
-                at_a = misfit(std::exp(a));
-            } else {
-                low = a;
-                a = b;
-                at_a = at_b;
-                b = low + golden * (high - low);
-                at_b = misfit(std::exp(b));
-            }
+        candidate.data_share.resize(prior.n_springs());
+        for (Index e = 0; e < prior.n_springs(); ++e) {
+            candidate.data_share(e) = report.data_share(problem.parameters().unknown(MotionParameter::stiffness, e));
         }
-        return at_a < at_b ? std::pair{std::exp(a), at_a} : std::pair{std::exp(b), at_b};
+        return candidate;
     }
 
     void fit_accelerations() {
@@ -316,6 +285,8 @@ private:
     const RecordedCases<Dim, double>& m_cases;
     const CalibrateOptions& m_options;
     double m_stiffness_damping; ///< beta of D = beta K, s
+    bool m_knows_damping;
+    Values<double> m_start{}; ///< of matching; empty: the prior
     Candidates<Dim> m_result;
 };
 
@@ -335,7 +306,10 @@ Candidates<Dim> make_candidates(const std::vector<NamedNetwork<Dim>>& given, con
     require(options.matching_iterations >= 0, "matching_iterations", "a number not below 0",
             options.matching_iterations);
     require(options.matching_tolerance > 0, "matching_tolerance", "a positive value", options.matching_tolerance);
-    require(options.matching_seconds > 0, "matching_seconds", "a positive time, s", options.matching_seconds);
+    require(!options.matching_seconds || *options.matching_seconds > 0, "matching_seconds", "a positive time, s",
+            options.matching_seconds.value_or(0));
+    require(!options.damping_ratio || (*options.damping_ratio >= 0 && *options.damping_ratio < 1), "damping_ratio",
+            "a part of critical in [0, 1)", options.damping_ratio.value_or(0));
     for (const auto& named : given) {
         validate(named.network);
         require(named.network.stiffness.size() > 0 && named.network.stiffness.maxCoeff() > 0,

@@ -10,6 +10,28 @@
 
 namespace springfit {
 
+namespace detail {
+
+/// The error that the noise of recorded motions makes by itself: sqrt(sum sigma^2 / sum |x - x_rest|^2), over the
+/// coordinates that errors count.
+template <int Dim>
+double error_of_noise(const CaseSet<Dim, double>& set) {
+    double noise = 0;
+    double size = 0;
+    for (const auto& motion : set.motions) {
+        const FreeNodes free(motion.n_nodes(), motion.clamped);
+        for (std::size_t t = 0; t < motion.positions.size(); ++t) {
+            for_observed(motion, t, free.nodes(), [&](int i) {
+                noise += Dim * motion.noise * motion.noise;
+                size += (motion.positions[t].col(i) - motion.rest_positions.col(i)).squaredNorm();
+            });
+        }
+    }
+    return size > 0 ? std::sqrt(noise / size) : 0.;
+}
+
+} // namespace detail
+
 template <int Dim>
 bool score(std::vector<Candidate<Dim>>& candidates, const RecordedCases<Dim, double>& cases,
            const CalibrateOptions& options) {
@@ -35,7 +57,8 @@ bool score(std::vector<Candidate<Dim>>& candidates, const RecordedCases<Dim, dou
         if (stage.stopped()) {
             found.error = std::numeric_limits<double>::infinity();
         }
-        return CaseScores{found.error, numbers, std::move(found.case_errors), std::move(found.case_statuses)};
+        return CaseScores{found.error, detail::error_of_noise(set), numbers, std::move(found.case_errors),
+                          std::move(found.case_statuses)};
     };
     // Matched motion first, then the other fits: an early end leaves the best of them judged.
     std::vector<Candidate<Dim>*> order;
@@ -75,10 +98,10 @@ double error_over(const CaseScores& scores, const CaseSet<Dim, double>& set, con
         const auto& motion = set.motions[c];
         const FreeNodes free(motion.n_nodes(), motion.clamped);
         double size = 0;
-        for (const auto& positions : motion.positions) {
-            for (int i : free.nodes()) {
-                size += (positions.col(i) - motion.rest_positions.col(i)).squaredNorm();
-            }
+        for (std::size_t t = 0; t < motion.positions.size(); ++t) {
+            for_observed(motion, t, free.nodes(), [&](int i) {
+                size += (motion.positions[t].col(i) - motion.rest_positions.col(i)).squaredNorm();
+            });
         }
         from_reference += scores.errors[s] * scores.errors[s] * size;
         of_reference += size;

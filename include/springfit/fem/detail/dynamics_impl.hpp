@@ -25,40 +25,48 @@ public:
     S c0;
     S c1;
     S weight;
-    Nodes positions;            ///< of all nodes; the clamped ones stay as set
+    Nodes nodes;                ///< positions of all nodes; the clamped ones stay as set
     Nodes predicted;            ///< x_predicted
     Nodes predicted_velocities; ///< v_predicted
     Nodes constant;             ///< forces that do not depend on x: the gradient at d = 0 without inertia and W
 
+    /// The Hessian is stiffness_part() K + mass_part() M.
+    [[nodiscard]] S stiffness_part() const {
+        return weight * (1 + c1 * m_dynamics->m_body->options().stiffness_damping);
+    }
+    [[nodiscard]] S mass_part() const { return c0 + weight * c1 * m_dynamics->m_body->options().mass_damping; }
+
+    /// Positions of all nodes for the free coordinates, m.
+    [[nodiscard]] const Nodes& positions(const Values<S>& values) {
+        m_dynamics->m_free.scatter(values, nodes);
+        return nodes;
+    }
     [[nodiscard]] S energy(const Values<S>& values) {
         const Nodes d = displacement(values);
         const auto& body = *m_dynamics->m_body;
         const Nodes inertia_and_damping = c0 * d * body.masses().asDiagonal() + weight * c1 * m_dynamics->damped(d);
-        return weight * body.energy(positions) + inertia_and_damping.cwiseProduct(d).sum() / 2 +
+        return weight * body.energy(nodes) + inertia_and_damping.cwiseProduct(d).sum() / 2 +
                constant.cwiseProduct(d).sum();
     }
     [[nodiscard]] S energy_rounding() const { return m_dynamics->m_body->energy_rounding(); }
     void gradient(const Values<S>& values, Values<S>& gradient) {
         const Nodes d = displacement(values);
         const auto& body = *m_dynamics->m_body;
-        const Nodes total = weight * (body.internal_forces(positions) + c1 * m_dynamics->damped(d)) +
+        const Nodes total = weight * (body.internal_forces(nodes) + c1 * m_dynamics->damped(d)) +
                             c0 * d * body.masses().asDiagonal() + constant;
         gradient = m_dynamics->m_free.template gather<Dim, S>(total);
     }
     /// With K(x) for K(x_n) in the damping: they differ little, and one matrix serves for both.
     [[nodiscard]] SymmetricMatrix<S> hessian(const Values<S>& values) {
-        m_dynamics->m_free.scatter(values, positions);
         const auto& body = *m_dynamics->m_body;
-        body.assemble(positions, m_dynamics->m_stiffness);
-        m_dynamics->m_stiffness.combine(weight * (1 + c1 * body.options().stiffness_damping),
-                                        c0 + weight * c1 * body.options().mass_damping, body.masses());
+        body.assemble(positions(values), m_dynamics->m_stiffness);
+        m_dynamics->m_stiffness.combine(stiffness_part(), mass_part(), body.masses());
         return m_dynamics->m_stiffness.matrix();
     }
 
 private:
     [[nodiscard]] Nodes displacement(const Values<S>& values) {
-        m_dynamics->m_free.scatter(values, positions);
-        return positions - predicted;
+        return positions(values) - predicted;
     }
 
     Dynamics* m_dynamics;
@@ -78,7 +86,7 @@ Dynamics<Dim, S>::Dynamics(std::shared_ptr<const ElasticBody<Dim, S>> body, cons
     }
     m_body->assemble(m_body->rest_positions(), m_stiffness);
     m_stiffest = m_stiffness.matrix().diagonal().maxCoeff();
-    m_solver.set_max_diagonal_iterations(detail::diagonal_iterations);
+    m_solver.fallback().set_max_diagonal_iterations(detail::diagonal_iterations);
 }
 
 template <int Dim, std::floating_point S>
@@ -88,7 +96,7 @@ void Dynamics<Dim, S>::use_clamps(const Scenario<Dim, S>& scenario) {
         m_clamped = std::move(clamped);
         m_free = FreeNodes(m_body->rest_positions().cols(), m_clamped);
         m_stiffness = m_body->make_stiffness(m_free);
-        m_solver.reset();
+        m_factor_step = 0;
     }
 }
 
@@ -194,11 +202,11 @@ Status Dynamics<Dim, S>::attempt(State<Dim, S>& state, const Scenario<Dim, S>& s
         problem.weight * (damped(problem.predicted_velocities) - loads) + alpha * state.accelerations * masses;
 
     // Start where constant acceleration leads, or where the body is if that is not allowed.
-    problem.positions = problem.predicted;
+    problem.nodes = problem.predicted;
     for (int node : m_free.nodes()) {
-        problem.positions.col(node) += dt * dt * inertia_share * accelerations.col(node);
+        problem.nodes.col(node) += dt * dt * inertia_share * accelerations.col(node);
     }
-    Values<S> x = m_free.template gather<Dim, S>(problem.positions);
+    Values<S> x = m_free.template gather<Dim, S>(problem.nodes);
     if (!std::isfinite(problem.energy(x))) {
         x = m_free.template gather<Dim, S>(state.positions);
     }
@@ -211,6 +219,12 @@ Status Dynamics<Dim, S>::attempt(State<Dim, S>& state, const Scenario<Dim, S>& s
     NewtonOptions<S> newton{.max_iterations = m_options.max_iterations};
     newton.gradient_tolerance = std::max(m_options.tolerance * scale, rounding);
     newton.linear_tolerance = S(1e-3);
+    if (m_factor_step != dt) {
+        m_solver.set_factor(
+            detail::rest_factor(*m_body, m_free, problem.stiffness_part(), problem.mass_part()));
+        m_factor_step = dt;
+    }
+    m_solver.restart();
     const auto report = minimise(problem, x, m_solver, newton);
     m_iterations += report.iterations;
     const bool done = report.status == Status::converged ||
@@ -219,10 +233,10 @@ Status Dynamics<Dim, S>::attempt(State<Dim, S>& state, const Scenario<Dim, S>& s
         return report.status;
     }
 
-    m_free.scatter(x, problem.positions);
-    const Nodes d = problem.positions - problem.predicted;
+    m_free.scatter(x, problem.nodes);
+    const Nodes d = problem.nodes - problem.predicted;
     state.time = time;
-    state.positions = problem.positions;
+    state.positions = problem.nodes;
     state.velocities = problem.predicted_velocities + problem.c1 * d;
     state.accelerations = clamped_accelerations;
     m_last = state;

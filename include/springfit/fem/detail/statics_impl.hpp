@@ -38,16 +38,18 @@ inline NodePairs pairs_in_cells(const Cliques& cells) {
     return springfit::detail::sorted_unique_pairs(pairs);
 }
 
-/// The factor of the stiffness at rest of the body's preconditioner. Membranes, whose stiffness is singular where they
-/// are flat, have none.
+/// The factor of stiffness_part K + mass_part M, K the stiffness at rest of the body's preconditioner. Membranes, whose
+/// stiffness is singular where they are flat, have none.
 template <int Dim, std::floating_point Scalar>
-CorotatedPreconditioner<Dim, Scalar> rest_factor(const ElasticBody<Dim, Scalar>& body, const FreeNodes& free) {
+CorotatedPreconditioner<Dim, Scalar> rest_factor(const ElasticBody<Dim, Scalar>& body, const FreeNodes& free,
+                                                 Scalar stiffness_part = 1, Scalar mass_part = 0) {
     if (body.kind().is_membrane) {
         return {};
     }
     const auto plain = body.preconditioner();
     auto stiffness = plain->make_stiffness(free);
     plain->assemble(plain->rest_positions(), stiffness);
+    stiffness.combine(stiffness_part, mass_part, body.masses());
     return CorotatedPreconditioner<Dim, Scalar>(stiffness.matrix().lower(), free, pairs_in_cells(body.cells()),
                                                 body.rest_positions());
 }

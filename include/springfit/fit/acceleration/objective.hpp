@@ -34,7 +34,7 @@ struct AccelerationOptions {
 ///     m_i a_i^MSM = f_i + sum_e [ k_e (L - l_e) n + c_e ((v_j - v_i) . n) n - q_e n ]
 ///
 /// f_i are the external forces and those of the network's cells, whose volume stiffness is taken as given. Nodes
-/// clamped in a motion do not count in it. Frames are read once and not kept: memory is about 4 (unknowns at a node)^2
+/// clamped in a motion do not count in it, nor do those that were not seen. Frames are read once and not kept: memory is about 4 (unknowns at a node)^2
 /// bytes per node and 32 frames of the motion. Cost per frame: sum over nodes of unknowns^2. Sums are in double
 /// whatever the Scalar of the data, and do not depend on the number of threads.
 template <int Dim, std::floating_point Scalar>
@@ -79,7 +79,7 @@ public:
         const Values<double> root_weights = weights(motion.clamped, weight);
         for (std::size_t t = 0; t < motion.times.size(); ++t) {
             push(motion.positions[t], motion.velocities[t], motion.accelerations[t], motion.external_forces[t],
-                 root_weights);
+                 motion.unobserved.empty() ? root_weights : observed_weights(motion, t, root_weights));
         }
     }
 
@@ -127,6 +127,25 @@ private:
         }
         for (std::size_t i = 0; i < is_clamped.size(); ++i) {
             m_seen_free[i] = m_seen_free[i] || !is_clamped[i];
+        }
+        return root_weights;
+    }
+
+    /// No weight for a node that is not seen in a frame or in the two on either side, of which its acceleration is
+    /// differenced, or whose springs lead to one that is not seen.
+    [[nodiscard]] Values<double> observed_weights(const Motion<Dim, Scalar>& motion, std::size_t frame,
+                                                  Values<double> root_weights) const {
+        const std::size_t last = std::min(frame + 2, motion.times.size() - 1);
+        for (std::size_t t = frame - std::min<std::size_t>(frame, 2); t <= last; ++t) {
+            for (int node : motion.unobserved[t]) {
+                root_weights(node) = 0;
+            }
+        }
+        for (int node : motion.unobserved[frame]) {
+            for (Index end = m_end_begin[static_cast<std::size_t>(node)];
+                 end < m_end_begin[static_cast<std::size_t>(node) + 1]; ++end) {
+                root_weights(m_ends[static_cast<std::size_t>(end)].other) = 0;
+            }
         }
         return root_weights;
     }

@@ -22,8 +22,9 @@ struct GaussNewtonOptions {
     int max_cg_iterations = 40;  ///< of each matrix-free step
     double cg_tolerance = 0.05;  ///< relative residual of each matrix-free step, in (0, 1)
     double max_step = 1.5;       ///< largest change of an entry of theta in one iteration, > 0
+    Values<double> start{};      ///< theta to start from [n_unknowns]; empty: the prior, or a stiffer one
     int probes = 16;             ///< random vectors for the diagonal in matrix-free form, >= 1
-    ProgressCallback progress{}; ///< may end the search with the best so far
+    ProgressCallback progress{}; ///< asked before each product; may end the search with the best so far
 };
 
 /// Trajectory matching by a damped Gauss-Newton method (Levenberg and Marquardt) with exact gradients, projected onto

@@ -38,7 +38,7 @@ class TrajectoryPoint;
 ///
 ///     J = 1/2 sum_cases 1/s sum_frames |x(t; theta) - x_ref(t)|^2  +  lambda/2 |theta|^2 ,   lower <= theta <= upper,
 ///
-/// sums over the nodes that are not clamped. A motion of one frame is a static case: x is the network's equilibrium.
+/// sums over the nodes that are not clamped and were seen. A motion of one frame is a static case: x is the network's equilibrium.
 /// Any other is cut into windows: from the recorded positions and velocities of its first frame the network is stepped
 /// on its own, under the recorded forces and clamps, over the horizon. s makes cases of one size: for a static case sum
 /// |x_ref - x_rest|^2, for the windows of a motion the lesser of that and of the distance from the straight motion x_0
@@ -109,7 +109,8 @@ public:
     /// gradients with the one factorisation: one iteration at small strain, a few at large.
     [[nodiscard]] Values<double> product(const Values<double>& direction);
 
-    /// True where `dense` may be used: static cases, stiffness and volume alone fitted, springs turned little.
+    /// True where `dense` may be used: static cases seen in full, stiffness and volume alone fitted, springs turned
+    /// little.
     [[nodiscard]] bool has_dense() const;
 
     /// H in full [n_unknowns x n_unknowns], of small problems: for each set of clamps (B' K^-2 B) o (S W S'), B the

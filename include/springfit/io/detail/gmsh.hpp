@@ -74,10 +74,11 @@ private:
         }
         m_scanner.skip_line();
         const std::string version(m_scanner.word("the version"));
-        if (version != "2.2" && version != "4.1") {
+        const bool is_2 = version == "2" || version.starts_with("2.");
+        if (!is_2 && version != "4.1") {
             m_scanner.refuse(text("Gmsh version ", version, "; save it as version 4.1 or 2.2"));
         }
-        m_version = version == "2.2" ? 2 : 4;
+        m_version = is_2 ? 2 : 4;
         m_binary = m_scanner.count("0 for text, 1 for binary") == 1;
         if (m_scanner.count("the size of numbers") != 8) {
             m_scanner.refuse("expected numbers of 8 bytes");
@@ -137,14 +138,16 @@ private:
                 if (m_binary) {
                     (void)small("");
                 }
+                long long region = 0; // the first tag: the physical group
                 for (long long tag = 0; tag < tags; ++tag) {
-                    (void)small("a tag");
+                    const long long value = small("a tag");
+                    region = tag == 0 ? value : region;
                 }
                 nodes.clear();
                 for (int a = 0; a < type.n_nodes; ++a) {
                     nodes.push_back(small("the number of a node"));
                 }
-                m_collector.add_cell(type, nodes);
+                m_collector.add_cell(type, nodes, region);
             }
         }
     }
@@ -184,7 +187,7 @@ private:
         std::vector<long long> nodes;
         for (long long block = 0; block < blocks; ++block) {
             (void)small("a dimension");
-            (void)small("the number of an entity");
+            const long long entity = small("the number of an entity");
             const FileCell& type = cell_type(small("the type of an element"));
             const long long n = large("the number of elements");
             m_scanner.check_size(n, "elements");
@@ -194,7 +197,7 @@ private:
                 for (int a = 0; a < type.n_nodes; ++a) {
                     nodes.push_back(large("the number of a node"));
                 }
-                m_collector.add_cell(type, nodes);
+                m_collector.add_cell(type, nodes, entity);
             }
         }
     }

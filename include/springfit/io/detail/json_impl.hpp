@@ -18,7 +18,7 @@ namespace detail {
     return !value.is_object() && !value.is_string();
 }
 
-inline void append_json(std::string& result, const Json& value, int depth) {
+inline void append_json(std::string& result, const Json& value, int depth, std::string_view first_key = {}) {
     const auto members = value.is_object() || (value.is_array() && !goes_on_one_line(value));
     if (!members || value.empty()) {
         result += value.dump();
@@ -26,15 +26,23 @@ inline void append_json(std::string& result, const Json& value, int depth) {
     }
     const std::string indent(static_cast<std::size_t>(depth + 1) * 2, ' ');
     result += value.is_object() ? "{" : "[";
-    bool first = true;
-    for (const auto& [key, member] : value.items()) {
-        result += first ? "\n" : ",\n";
-        first = false;
+    bool is_first = true;
+    const auto append_member = [&](const std::string& key, const Json& member) {
+        result += is_first ? "\n" : ",\n";
+        is_first = false;
         result += indent;
         if (value.is_object()) {
             result += Json(key).dump() + ": ";
         }
         append_json(result, member, depth + 1);
+    };
+    if (!first_key.empty()) {
+        append_member(std::string(first_key), value.at(std::string(first_key)));
+    }
+    for (const auto& [key, member] : value.items()) {
+        if (first_key.empty() || key != first_key) {
+            append_member(key, member);
+        }
     }
     result += "\n" + indent.substr(2) + (value.is_object() ? "}" : "]");
 }
@@ -57,9 +65,9 @@ inline Json read_json(const std::filesystem::path& path) {
     }
 }
 
-inline std::string json_text(const Json& value) {
+inline std::string json_text(const Json& value, std::string_view first) {
     std::string result;
-    detail::append_json(result, value, 0);
+    detail::append_json(result, value, 0, first);
     result += '\n';
     return result;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <map>
 #include <optional>
 #include <span>
 #include <unordered_map>
@@ -53,12 +54,14 @@ public:
         m_points.push_back(position);
     }
 
-    void add_cell(const FileCell& type, std::span<const long long> point_numbers) {
+    /// `region`: the number of the part of the body that the cell is in, as far as the format knows such parts.
+    void add_cell(const FileCell& type, std::span<const long long> point_numbers, long long region = 0) {
         auto block = std::find_if(m_blocks.begin(), m_blocks.end(), [&](const Block& b) { return b.type == &type; });
         if (block == m_blocks.end()) {
-            block = m_blocks.insert(block, Block{&type, {}, 0});
+            block = m_blocks.insert(block, Block{&type, {}, 0, {}});
         }
         ++block->n_cells;
+        ++block->in_region[region];
         if (!type.kind) {
             return;
         }
@@ -79,6 +82,7 @@ private:
         const FileCell* type;
         std::vector<int> nodes;
         long long n_cells;
+        std::map<long long, long long> in_region; ///< cells of each region
     };
     static double orientation(const MeshFile& mesh, const CellBlock& block, Index cell);
     static void turn(MeshFile& mesh, CellBlock& block);
@@ -142,7 +146,11 @@ inline MeshFile MeshCollector::finish() && {
         mesh.points.col(static_cast<Index>(i)) << m_points[i][0], m_points[i][1], m_points[i][2];
     }
     std::string left_out;
+    std::map<long long, long long> regions;
     for (const Block& block : m_blocks) {
+        for (const auto& [region, n_cells] : block.in_region) {
+            regions[region] += block.type->dimension == highest ? n_cells : 0;
+        }
         if (block.type->dimension < highest) {
             left_out += text(left_out.empty() ? "left out: " : ", ", block.n_cells, ' ', block.type->plural);
             continue;
@@ -167,6 +175,14 @@ inline MeshFile MeshCollector::finish() && {
                      [](const CellBlock& a, const CellBlock& b) { return a.cells.cols() > b.cells.cols(); });
     if (!left_out.empty()) {
         mesh.notes.push_back(left_out);
+    }
+    std::erase_if(regions, [](const auto& region) { return region.second == 0; });
+    if (regions.size() > 1) {
+        std::string list;
+        for (const auto& [region, n_cells] : regions) {
+            list += text(list.empty() ? "" : ", ", "region ", region, " of ", n_cells, " cells");
+        }
+        mesh.notes.push_back(text("one material for all of ", regions.size(), " regions: ", list));
     }
     if (highest == 3 || mesh.is_flat()) {
         for (CellBlock& block : mesh.blocks) {

@@ -4,8 +4,9 @@
 #include <cmath>
 
 #include <springfit/io/detail/xdmf.hpp>
-#include <springfit/io/differences.hpp>
 #include <springfit/io/motion_file.hpp>
+#include <springfit/motion/differences.hpp>
+#include <springfit/motion/gaps.hpp>
 
 namespace springfit::io {
 
@@ -132,9 +133,12 @@ template <std::floating_point Scalar>
     return times;
 }
 
+/// What a value that is not a number is: a mistake, or that of a node that was not seen.
+enum class NotANumber { refused, unobserved };
+
 template <int Dim, std::floating_point Scalar>
 [[nodiscard]] std::vector<Points<Dim, Scalar>> read_frames(const hdf5::File& file, const std::string& dataset,
-                                                           std::size_t n_frames, Index n_nodes) {
+                                                           std::size_t n_frames, Index n_nodes, NotANumber rule) {
     const hdf5::Shape expected{n_frames, static_cast<hsize_t>(n_nodes), Dim};
     if (const hdf5::Shape found = file.shape(dataset); found != expected) {
         file.refuse(dataset, text("expected ", hdf5::to_text(expected), ", frames x nodes x dimension, found ",
@@ -144,7 +148,9 @@ template <int Dim, std::floating_point Scalar>
     for (std::size_t t = 0; t < n_frames; ++t) {
         file.read_row(dataset, t, frames[t].data());
         for (Index i = 0; i < n_nodes; ++i) {
-            if (!frames[t].col(i).allFinite()) {
+            const auto values = frames[t].col(i).array();
+            const bool is_good = rule == NotANumber::unobserved ? !values.isInf().any() : values.isFinite().all();
+            if (!is_good) {
                 file.refuse(dataset,
                             text("expected finite values, found one that is not at node ", i, " in frame ", t));
             }
@@ -188,10 +194,11 @@ RecordedMotion<Dim, Scalar> read_motion(const std::filesystem::path& path) {
     }
 
     motion.times = detail::read_times<Scalar>(file);
-    const auto read = [&](const char* dataset) {
-        return detail::read_frames<Dim, Scalar>(file, dataset, motion.times.size(), n_nodes);
+    const auto read = [&](const char* dataset, detail::NotANumber rule = detail::NotANumber::refused) {
+        return detail::read_frames<Dim, Scalar>(file, dataset, motion.times.size(), n_nodes, rule);
     };
-    motion.positions = read("/reference/displacement");
+    motion.positions = read("/reference/displacement", detail::NotANumber::unobserved);
+    motion.unobserved = fill_gaps<Dim, Scalar>(motion.rest_positions, motion.times, motion.positions);
     const bool has_velocity = file.has("/reference/velocity");
     if (has_velocity) {
         motion.velocities = read("/reference/velocity");

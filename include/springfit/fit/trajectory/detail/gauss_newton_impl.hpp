@@ -115,11 +115,20 @@ public:
     /// An estimate of H's diagonal in matrix-free form.
     [[nodiscard]] const Values<double>& diagonal() const { return m_diagonal; }
 
-    /// Minimises 1/2 s'(H + mu I)s + gradient's, at the point that the matrix was made at.
-    [[nodiscard]] Values<double> step(TrajectoryPoint<Dim>& point, const Values<double>& gradient, double mu) const {
+    /// Minimises 1/2 s'(H + mu I)s + gradient's, at the point that the matrix was made at. `go_on(part)` is asked
+    /// before each product; from where it says false, the step is of no meaning.
+    template <class GoOn>
+    [[nodiscard]] Values<double> step(TrajectoryPoint<Dim>& point, const Values<double>& gradient, double mu,
+                                      const GoOn& go_on) const {
         if (m_dense.size() == 0) {
-            return reduced_newton_step([&](const Values<double>& v) { return point.product(v); }, m_diagonal, mu,
-                                       gradient, m_active, m_options.cg_tolerance, m_options.max_cg_iterations);
+            bool goes_on = true;
+            int n_products = 0;
+            const auto product = [&](const Values<double>& v) -> Values<double> {
+                goes_on = goes_on && go_on(static_cast<double>(n_products++) / m_options.max_cg_iterations);
+                return goes_on ? point.product(v) : Values<double>::Zero(v.size()); // which ends the iterations
+            };
+            return reduced_newton_step(product, m_diagonal, mu, gradient, m_active, m_options.cg_tolerance,
+                                       m_options.max_cg_iterations);
         }
         DenseMatrix<double> matrix = m_dense;
         Values<double> step = -gradient;
@@ -158,7 +167,15 @@ TrajectoryReport gauss_newton(const TrajectoryProblem<Dim>& problem, const Gauss
     auto point = std::make_unique<TrajectoryPoint<Dim>>(problem);
     auto trial = std::make_unique<TrajectoryPoint<Dim>>(problem);
     Values<double> gradient = Values<double>::Zero(problem.n_unknowns());
-    if (!detail::move_to_start(problem, lower, upper, point, trial, gradient, report)) {
+    require(options.start.size() == 0 || options.start.size() == problem.n_unknowns(), "start",
+            text(problem.n_unknowns(), " values, one per unknown"), options.start.size());
+    const bool is_warm = options.start.size() > 0 && point->move_to(options.start.cwiseMax(lower).cwiseMin(upper)) &&
+                         point->gradient(gradient);
+    if (is_warm) {
+        report.theta = point->theta();
+        report.objective_start = point->value();
+        report.misfit_start = point->misfit();
+    } else if (!detail::move_to_start(problem, lower, upper, point, trial, gradient, report)) {
         return report;
     }
     report.status = Status::iteration_limit;
@@ -181,13 +198,20 @@ TrajectoryReport gauss_newton(const TrajectoryProblem<Dim>& problem, const Gauss
         if (report.iterations >= options.max_iterations) {
             break;
         }
-        if (!go_on(options.progress, "trajectory",
-                   static_cast<double>(report.iterations) / std::max(1, options.max_iterations))) {
+        bool goes_on = true;
+        const auto ask = [&](double part) {
+            goes_on = goes_on && go_on(options.progress, "trajectory",
+                                       (report.iterations + part) / std::max(1, options.max_iterations));
+            return goes_on;
+        };
+        Values<double> step;
+        if (ask(0)) {
+            step = matrix.step(*point, gradient, mu, ask);
+        }
+        if (!goes_on) {
             report.status = Status::interrupted;
             break;
         }
-
-        Values<double> step = matrix.step(*point, gradient, mu);
         detail::limit(step, options.max_step);
         const Values<double> theta = (point->theta() + step).cwiseMax(lower).cwiseMin(upper);
         Values<double> trial_gradient;

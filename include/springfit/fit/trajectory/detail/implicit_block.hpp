@@ -266,8 +266,7 @@ inline bool settle_stuck(const Eigen::ArrayXd& length, const Eigen::ArrayXd& unb
 /// nodes where they shall be). False where some column did not come to balance.
 template <int Dim>
 bool solve_implicit(const ImplicitSystem<Dim>& system, const ColumnBlock& target, const ColumnBlock& old,
-                    const ColumnBlock& external, ColumnBlock& y) {
-    constexpr int max_iterations = 200;
+                    const ColumnBlock& external, ColumnBlock& y, int max_iterations = 200) {
     ColumnBlock force;
     system.unbalanced(y, target, old, external, force);
     Eigen::ArrayXd unbalanced = column_maxima(force);

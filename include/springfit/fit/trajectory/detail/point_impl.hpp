@@ -141,7 +141,9 @@ Values<double> TrajectoryPoint<Dim>::curvature(int probes) {
 template <int Dim>
 bool TrajectoryPoint<Dim>::has_dense() const {
     const auto& parameters = m_problem->m_parameters;
-    if (!m_problem->is_static() || m_problem->n_unknowns() > 1000) {
+    const auto& motions = m_problem->m_motions;
+    if (!m_problem->is_static() || m_problem->n_unknowns() > 1000 ||
+        std::any_of(motions.begin(), motions.end(), [](const auto& motion) { return !motion.unobserved.empty(); })) {
         return false;
     }
     for (Index e = 0; e < m_network.n_springs(); ++e) {

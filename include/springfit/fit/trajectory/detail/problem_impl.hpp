@@ -36,7 +36,9 @@ Motion<Dim, double> in_double(const Motion<Dim, Scalar>& motion) {
             cast(motion.positions),
             cast(motion.velocities),
             {},
-            cast(motion.external_forces)};
+            cast(motion.external_forces),
+            motion.unobserved,
+            static_cast<double>(motion.noise)};
 }
 
 } // namespace detail
@@ -129,12 +131,12 @@ void TrajectoryProblem<Dim>::add_windows(std::size_t number, std::vector<detail:
         for (Index frame = last > 0 ? first + 1 : 0; frame <= first + horizon; ++frame) {
             const auto at = static_cast<std::size_t>(frame);
             const double time = motion.times[at] - motion.times[start];
-            for (int i : m_groups[group].free.nodes()) {
+            for_observed(motion, at, m_groups[group].free.nodes(), [&](int i) {
                 const Vector<Dim, double> x = motion.positions[at].col(i);
                 from_rest += (x - motion.rest_positions.col(i)).squaredNorm();
                 from_straight +=
                     (x - motion.positions[start].col(i) - time * motion.velocities[start].col(i)).squaredNorm();
-            }
+            });
         }
         single.push_back({group, {number}, {first}, Values<double>::Ones(1), horizon});
     }

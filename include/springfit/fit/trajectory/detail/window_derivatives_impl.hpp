@@ -10,14 +10,14 @@ bool WindowSimulation<Dim>::add_gradient(WindowTape<Dim>& tape, NetworkValues& d
     if (m_windows.frames == 0) {
         const ColumnBlock& y = tape.positions.front();
         ColumnBlock z;
-        if (!solve(tape.turned.front(), y, y, weighted(residual(y, 0)), exactly, z)) {
+        if (!solve(tape.turned.front(), y, y, weighted(residual(y, 0), 0), exactly, z)) {
             return false;
         }
         add_parameter_derivative<Dim>(m_system.network, y, z, derivative);
         return true;
     }
     return backwards(
-        tape, [&](const ColumnBlock& state, Index frame) { return weighted(residual(state, frame)); },
+        tape, [&](const ColumnBlock& state, Index frame) { return weighted(residual(state, frame), frame); },
         [&](const ColumnBlock& y, const ColumnBlock& x, const ColumnBlock& right, ColumnBlock& z) {
             return solve(m_system.preconditioner(y), y, x, right, exactly, z);
         },
@@ -38,20 +38,21 @@ void WindowSimulation<Dim>::add_product(WindowTape<Dim>& tape, const NetworkValu
         m_system.hold(force);
         ColumnBlock u;
         (void)solve(tape.turned.front(), y, y, force, loosely, u);
-        (void)solve(tape.turned.front(), y, y, weighted(u), loosely, force);
+        (void)solve(tape.turned.front(), y, y, weighted(u, 0), loosely, force);
         add_parameter_derivative<Dim>(m_system.network, y, force, derivative);
         return;
     }
     const std::vector<ColumnBlock> moved = forwards(tape, change);
     (void)backwards(
-        tape, [&](const ColumnBlock&, Index frame) { return weighted(moved[static_cast<std::size_t>(frame - 1)]); },
+        tape,
+        [&](const ColumnBlock&, Index frame) { return weighted(moved[static_cast<std::size_t>(frame - 1)], frame); },
         solve_step, false, derivative);
 }
 
 template <int Dim>
 template <class Draw>
 void WindowSimulation<Dim>::add_probe(WindowTape<Dim>& tape, Draw&& draw, NetworkValues& derivative) const {
-    const auto random = [&](const ColumnBlock& state) {
+    const auto random = [&](const ColumnBlock& state, Index frame) {
         ColumnBlock z(state.rows(), state.cols());
         for (Index column = 0; column < z.cols(); ++column) {
             for (Index row = 0; row < z.rows(); ++row) {
@@ -59,6 +60,7 @@ void WindowSimulation<Dim>::add_probe(WindowTape<Dim>& tape, Draw&& draw, Networ
             }
         }
         m_system.hold(z);
+        hide_unobserved(frame, z);
         return z;
     };
     const auto solve = [&](const ColumnBlock&, const ColumnBlock&, const ColumnBlock& right, ColumnBlock& z) {
@@ -68,11 +70,12 @@ void WindowSimulation<Dim>::add_probe(WindowTape<Dim>& tape, Draw&& draw, Networ
     if (m_windows.frames == 0) {
         const ColumnBlock& y = tape.positions.front();
         ColumnBlock z;
-        m_system.factor.solve(random(y), z);
+        m_system.factor.solve(random(y, 0), z);
         add_parameter_derivative<Dim>(m_system.network, y, z, derivative);
         return;
     }
-    (void)backwards(tape, [&](const ColumnBlock& state, Index) { return random(state); }, solve, false, derivative);
+    (void)backwards(
+        tape, [&](const ColumnBlock& state, Index frame) { return random(state, frame); }, solve, false, derivative);
 }
 
 /// The change of the positions at each frame along a change of the network's values.

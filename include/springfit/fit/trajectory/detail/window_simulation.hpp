@@ -39,17 +39,28 @@ public:
                    group.step > 0 ? 1 / m_part : 0.},
           m_n_steps(windows.frames * rule.steps_per_frame), m_interval(checkpoint_interval) {}
 
-    /// Simulates; `misfit` is sum weight |x - x_ref|^2. `near` is where static equilibria are looked for, null: at
-    /// the reference; where none is found there, at rest. False where the network does not come to balance.
+    /// Newton iterations from the equilibrium of another network: one that is farther away is not worth the search.
+    static constexpr int max_iterations_near = 30;
+
+    /// Simulates; `misfit` is sum weight |x - x_ref|^2. `near` is where static equilibria are looked for, in few
+    /// iterations; null: at the reference, and where none is found there, at rest. False where the network does not
+    /// come to balance.
     [[nodiscard]] bool simulate(WindowTape<Dim>& tape, const WindowTape<Dim>* near, double& misfit) const {
         tape = {};
         misfit = 0;
         if (m_windows.frames == 0) {
             const ColumnBlock reference = gather(&Motion<Dim, double>::positions, 0, 0);
             const ColumnBlock external = gather(&Motion<Dim, double>::external_forces, 0, 0);
-            ColumnBlock y = near != nullptr && !near->positions.empty() ? near->positions.front() : reference;
+            const bool is_near = near != nullptr && !near->positions.empty();
+            ColumnBlock y = is_near ? near->positions.front() : reference;
             set_clamped(reference, y);
-            if (!solve_implicit<Dim>(m_system, reference, y, external, y)) {
+            const bool is_balanced = is_near
+                                         ? solve_implicit<Dim>(m_system, reference, y, external, y, max_iterations_near)
+                                         : solve_implicit<Dim>(m_system, reference, y, external, y);
+            if (!is_balanced && is_near) {
+                return false;
+            }
+            if (!is_balanced) {
                 y = rest(reference);
                 set_clamped(reference, y);
                 if (!solve_implicit<Dim>(m_system, reference, y, external, y)) {
@@ -127,18 +138,37 @@ private:
         }
     }
 
-    /// x - x_ref at a frame of the windows; 0 at clamped nodes.
+    /// x - x_ref at a frame of the windows; 0 at clamped nodes and where nothing was seen.
     [[nodiscard]] ColumnBlock residual(const ColumnBlock& x, Index frame) const {
         ColumnBlock result = x - gather(&Motion<Dim, double>::positions, frame, 0);
         m_system.hold(result);
+        hide_unobserved(frame, result);
         return result;
+    }
+
+    void hide_unobserved(Index frame, ColumnBlock& block) const {
+        for (Index c = 0; c < block.cols(); ++c) {
+            const auto& motion = m_motions[m_windows.motions[static_cast<std::size_t>(c)]];
+            if (motion.unobserved.empty()) {
+                continue;
+            }
+            const auto at = static_cast<std::size_t>(m_windows.first[static_cast<std::size_t>(c)] + frame);
+            for (int node : motion.unobserved[at]) {
+                block.col(c).template segment<Dim>(Dim * node).setZero();
+            }
+        }
     }
 
     [[nodiscard]] double weighted_square(const ColumnBlock& residual) const {
         return (column_dots(residual, residual) * m_windows.weight.array()).sum();
     }
 
-    [[nodiscard]] ColumnBlock weighted(const ColumnBlock& block) const { return block * m_windows.weight.asDiagonal(); }
+    /// W block, the derivative of the objective by the positions of a frame: no weight where nothing was seen.
+    [[nodiscard]] ColumnBlock weighted(const ColumnBlock& block, Index frame) const {
+        ColumnBlock result = block * m_windows.weight.asDiagonal();
+        hide_unobserved(frame, result);
+        return result;
+    }
 
     void finish_step(const ColumnBlock& y, ColumnBlock& x, ColumnBlock& v) const {
         for_lanes(y, [&](Index row, Index column) {

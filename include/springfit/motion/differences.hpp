@@ -7,7 +7,7 @@
 #include <springfit/core/error.hpp>
 #include <springfit/core/types.hpp>
 
-namespace springfit::io {
+namespace springfit {
 
 namespace detail {
 
@@ -32,9 +32,9 @@ namespace detail {
 } // namespace detail
 
 /// Derivatives in time of frames at increasing, not necessarily even times, by differences that are exact for
-/// polynomials of degree order + 1: second-order accurate at every frame, the ends included.
+/// polynomials of degree order + 3: fourth-order accurate at every frame, the ends included.
 ///
-/// `order` is 1 or 2. Uses the order + 2 frames nearest to each frame, or all where there are fewer; with no more
+/// `order` is 1 or 2. Uses the order + 4 frames nearest to each frame, or all where there are fewer; with no more
 /// frames than `order` the derivative is zero. O(frames x nodes).
 template <int Dim, std::floating_point Scalar>
 [[nodiscard]] std::vector<Points<Dim, Scalar>>
@@ -42,7 +42,7 @@ differentiate(const std::vector<Scalar>& times, const std::vector<Points<Dim, Sc
     require(order == 1 || order == 2, "order", "1 or 2", order);
     require(times.size() == frames.size(), "times", text(frames.size(), " values, one per frame"), times.size());
     const std::vector<double> t(times.begin(), times.end());
-    const std::size_t count = std::min(t.size(), static_cast<std::size_t>(order) + 2);
+    const std::size_t count = std::min(t.size(), static_cast<std::size_t>(order) + 4);
     std::vector<Points<Dim, Scalar>> result;
     result.reserve(frames.size());
     std::size_t first = 0;
@@ -64,4 +64,4 @@ differentiate(const std::vector<Scalar>& times, const std::vector<Points<Dim, Sc
     return result;
 }
 
-} // namespace springfit::io
+} // namespace springfit
