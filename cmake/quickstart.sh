@@ -15,7 +15,8 @@ factor_packages="libsuitesparse-dev libopenblas0-serial"
 program_packages="$core_packages $factor_packages pkg-config libtbb-dev libcgal-dev nlohmann-json3-dev libhdf5-dev
                   libcli11-dev"
 study_packages="$core_packages $factor_packages pkg-config libtbb-dev libcgal-dev coinor-libipopt-dev libpagmo-dev"
-test_packages="$program_packages coinor-libipopt-dev libpagmo-dev doctest-dev python3 python3-h5py clang"
+test_packages="$program_packages coinor-libipopt-dev libpagmo-dev doctest-dev python3 python3-h5py python3-scipy
+               clang"
 performance_packages="$core_packages $factor_packages pkg-config libtbb-dev coinor-libipopt-dev libbenchmark-dev
                       libbullet-dev libmujoco-dev libpetsc-real-dev libopenmpi-dev python3 python3-scipy"
 
@@ -102,7 +103,7 @@ demo)
     cmake --build build --target springfit
     fetch_surfaces elephant
     build/bin/springfit fit build/data/elephant.off --young 5e4 --poisson 0.45 --density 1000 \
-        --material neo-hookean --nodes 2000 --volume --static-cases 36 --fit-seconds 120 --out out/elephant
+        --nodes 2000 --out out/elephant
     ;;
 test)
     install_missing $test_packages
@@ -114,7 +115,7 @@ study)
     install_missing $study_packages
     cmake --preset study
     cmake --build build --target springfit_study
-    fetch_surfaces elephant fandisk knot1 bear
+    fetch_surfaces elephant fandisk knot1 bear femur homer
     build/bin/springfit_study --data build/data --out docs/results
     ;;
 performance)

@@ -28,7 +28,8 @@ constexpr const char* usage =
     "  --out DIR   where to write (docs/results; quick: study-quick)\n"
     "  --data DIR  a folder with elephant.off and other surfaces; without it they are left out\n"
     "  --seed N    of all load cases (1)\n"
-    "  --only PART recovery, solids, surfaces, dynamics, coarse, time, setups or plane; may be given again\n"
+    "  --only PART recovery, solids, surfaces, dynamics, coarse, strangers, time,\n"
+    "              setups or plane; may be given again\n"
     "Exit codes: 0 when it ran, whatever the bars; 1 where known springs are not recovered; 2 for wrong arguments;\n"
     "130 where Ctrl-C ended it early, with all that was done so far in the files.\n";
 
@@ -36,8 +37,8 @@ using Part = void (*)(study::Report&, const study::Settings&);
 
 constexpr std::pair<const char*, Part> parts[] = {
     {"recovery", study::study_recovery}, {"solids", study::study_solids}, {"surfaces", study::study_surfaces},
-    {"dynamics", study::study_dynamics}, {"coarse", study::study_coarse}, {"time", study::study_time},
-    {"setups", study::study_setups},     {"plane", study::study_plane},
+    {"dynamics", study::study_dynamics}, {"coarse", study::study_coarse}, {"strangers", study::study_strangers},
+    {"time", study::study_time},         {"setups", study::study_setups}, {"plane", study::study_plane},
 };
 
 struct Arguments {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
 #include <iostream>
+#include <numbers>
 #include <numeric>
 #include <random>
 
@@ -51,6 +53,23 @@ Mesh<2, double, Tri3> rectangle_mesh(double length, double height, Index n_nodes
     return cgal::triangulate<double>(outline, {.n_nodes = n_nodes});
 }
 
+Mesh<2, double, Tri3> perforated_rectangle(double length, double height, double radius, Index n_nodes) {
+    constexpr int n_round = 40;
+    cgal::Outline outline;
+    outline.points.resize(2, 4 + n_round);
+    outline.segments.resize(2, 4 + n_round);
+    outline.points.leftCols(4) << 0, length, length, 0, 0, 0, height, height;
+    outline.segments.leftCols(4) << 0, 1, 2, 3, 1, 2, 3, 0;
+    for (int i = 0; i < n_round; ++i) {
+        const double angle = 2 * std::numbers::pi * i / n_round;
+        outline.points.col(4 + i) << length / 2 + radius * std::cos(angle), height / 2 + radius * std::sin(angle);
+        outline.segments.col(4 + i) << 4 + i, 4 + (i + 1) % n_round;
+    }
+    outline.holes.resize(2, 1);
+    outline.holes << length / 2, height / 2;
+    return cgal::triangulate<double>(outline, {.n_nodes = n_nodes});
+}
+
 Mesh<3, double, Tet4> box_mesh(const std::array<double, 3>& size, Index n_nodes) {
     cgal::Surface surface;
     surface.nodes.resize(3, 8);
@@ -80,6 +99,10 @@ std::optional<Interpolation<double>> interpolation_at(const Mesh<3, double, Tet4
 }
 
 #else
+
+Mesh<2, double, Tri3> perforated_rectangle(double length, double height, double /*radius*/, Index n_nodes) {
+    return rectangle_mesh(length, height, n_nodes);
+}
 
 Mesh<2, double, Tri3> rectangle_mesh(double length, double height, Index n_nodes) {
     const double cell = std::sqrt(length * height / static_cast<double>(n_nodes));

@@ -44,12 +44,16 @@ void study_setups(Report& report, const Settings& settings);
 void study_recovery(Report& report, const Settings& settings);
 void study_dynamics(Report& report, const Settings& settings);
 void study_coarse(Report& report, const Settings& settings);
+void study_strangers(Report& report, const Settings& settings);
 void study_time(Report& report, const Settings& settings);
 
 // What needs CGAL, in the one translation unit that includes it; without CGAL, boxes and rectangles are cut from
 // jittered grids, and there is nothing else.
 
 [[nodiscard]] springfit::Mesh<2, double, springfit::Tri3> rectangle_mesh(double length, double height, Index n_nodes);
+/// With a round hole in its middle; without CGAL, without the hole.
+[[nodiscard]] springfit::Mesh<2, double, springfit::Tri3> perforated_rectangle(double length, double height,
+                                                                               double radius, Index n_nodes);
 [[nodiscard]] springfit::Mesh<3, double, springfit::Tet4> box_mesh(const std::array<double, 3>& size, Index n_nodes);
 /// The inside of a surface; nothing, with the reason on standard output, where there is no such file or no solid.
 [[nodiscard]] std::optional<springfit::Mesh<3, double, springfit::Tet4>> solid_mesh(const std::filesystem::path& path,

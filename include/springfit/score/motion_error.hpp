@@ -107,8 +107,8 @@ template <int Dim, std::floating_point Scalar>
 ///
 /// The sums run over the nodes that are not clamped in the reference. An equilibrium is looked for from the reference's
 /// positions, then from the scenario's start, then in load steps. A motion in time is stepped explicitly (symplectic
-/// Euler); where the stable step is so short that this would take long, or where it diverges, implicitly (implicit
-/// Euler of two step lengths, extrapolated). A case that fails in all of these counts as 1, and its status says why. So
+/// Euler), where it diverges in shorter steps; where the stable step is so short that this would take long, implicitly
+/// (implicit Euler of two step lengths, extrapolated). A case that fails in all of these counts as 1, and its status says why. So
 /// does a motion that stops half way: a network is not scored on the part that it survives. Interrupted, the error is
 /// that of the frames compared so far. Throws InvalidArgument for scenarios, references and network that do not fit
 /// together. O(springs x sub-steps), no frame is kept.

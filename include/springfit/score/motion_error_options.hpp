@@ -12,8 +12,9 @@ struct MotionErrorOptions {
     int max_iterations = 500;           ///< Newton iterations of a static case, >= 1
     /// A motion in time that would take more sub-steps times springs is stepped implicitly.
     double most_explicit_work = 1e9;
-    int implicit_steps_per_frame = 16; ///< then, >= 1
-    /// Do not try again a case that fails, and leave out those after it: they count as 1, too, and are `interrupted`.
+    int implicit_steps_per_frame = 8; ///< then, >= 1
+    /// Try a case in one way alone, and leave out those after one that fails: they count as 1, too, and are
+    /// `interrupted`.
     bool stop_at_failure = false;
     Execution execution{}; ///< cases are independent of each other
 };

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include <springfit/calibrate/calibrate.hpp>
+#include <springfit/calibrate/detail/units.hpp>
 
 namespace springfit {
 
@@ -106,31 +107,47 @@ void warn_of_error(Calibration<Dim>& result, const RecordedCases<Dim, double>& c
          .values = {{"held_out_error", best.held_out.error}, {"limit", options.limits.poor}}});
 }
 
-/// Makes the candidates of a variant from the cases in `learnt`, and scores them. Returns false where the callback ended
-/// it.
+/// What a candidate was made from: a variant, and where it is no fit, the number among those given.
+struct Origin {
+    std::size_t variant = 0;
+    std::optional<std::size_t> given{};
+};
+
+/// Makes the candidates of a variant from the cases in `learnt`, and scores matched motion; all of them where there is
+/// none. (What else there is waits until the best is known.) Returns false where the callback ended it.
 template <int Dim>
-bool add_candidates(const NetworkVariant<Dim>& variant, const RecordedCases<Dim, double>& learnt,
-                    const RecordedCases<Dim, double>& cases, const CalibrateOptions& options,
-                    Calibration<Dim>& result) {
+bool add_candidates(const NetworkVariant<Dim>& variant, std::size_t number, const RecordedCases<Dim, double>& learnt,
+                    const RecordedCases<Dim, double>& cases, const CalibrateOptions& options, Calibration<Dim>& result,
+                    std::vector<Origin>& origins) {
     const Stopwatch fitting;
     auto made = make_candidates(variant.given, learnt, options);
-    if (!result.candidates.empty()) { // cells without stiffness: the same networks as before
-        std::erase_if(made.all, [](const auto& candidate) {
-            const auto& network = candidate.network;
-            return network.n_cells() > 0 && !(network.volume_stiffness.array() > 0).any() && !candidate.trajectory &&
-                   !candidate.acceleration;
-        });
-    }
     result.warnings.insert(result.warnings.end(), made.warnings.begin(), made.warnings.end());
     result.seconds[0].second += fitting.seconds();
-    const Stopwatch scoring;
-    const bool all_scored = score(made.all, cases, options);
-    result.seconds[1].second += scoring.seconds();
-    for (auto& candidate : made.all) {
-        if (!variant.parts.empty()) {
-            candidate.name += " (" + variant.parts + ")";
+    std::vector<Candidate<Dim>> others, matched;
+    for (std::size_t c = 0; c < made.all.size(); ++c) {
+        auto& candidate = made.all[c];
+        const bool is_given = c < variant.given.size();
+        const auto& network = candidate.network;
+        const bool is_again = number > 0 && is_given && network.n_cells() > 0 && // as without the cells
+                              !(network.volume_stiffness.array() > 0).any();
+        if (candidate.trajectory) {
+            matched.push_back(std::move(candidate));
+        } else if (!is_again) {
+            origins.push_back({number, is_given ? std::optional(c) : std::nullopt});
+            others.push_back(std::move(candidate));
         }
-        result.candidates.push_back(std::move(candidate));
+    }
+    origins.resize(origins.size() + matched.size(), {number, std::nullopt});
+    const Stopwatch scoring;
+    const bool all_scored = score_try(matched.empty() ? others : matched, cases, options);
+    result.seconds[1].second += scoring.seconds();
+    for (auto* candidates : {&others, &matched}) {
+        for (auto& candidate : *candidates) {
+            if (!variant.parts.empty()) {
+                candidate.name += " (" + variant.parts + ")";
+            }
+            result.candidates.push_back(std::move(candidate));
+        }
     }
     return all_scored && !made.interrupted;
 }
@@ -150,7 +167,7 @@ bool finish_try(const NetworkVariant<Dim>& variant, const RecordedCases<Dim, dou
         return !made.interrupted;
     }
     const Stopwatch scoring;
-    const bool all_scored = score(made.all, cases, options);
+    const bool all_scored = score_try(made.all, cases, options);
     result.seconds[1].second += scoring.seconds();
     if (found.held_out.error <= best.held_out.error) {
         found.name = best.name;
@@ -160,55 +177,99 @@ bool finish_try(const NetworkVariant<Dim>& variant, const RecordedCases<Dim, dou
     return all_scored && !made.interrupted;
 }
 
+/// Tries the variants, finishes the best and judges all. Fills in `result`, in the units of its arguments.
+template <int Dim>
+void try_variants(const std::vector<NetworkVariant<Dim>>& variants, const RecordedCases<Dim, double>& cases,
+                  const CalibrateOptions& options, Calibration<Dim>& result, std::vector<Origin>& origins) {
+    bool unfinished = cases.interrupted;
+    const bool is_trying = variants.size() > 1;
+    const auto fewer = is_trying ? cases_of_a_try(cases) : RecordedCases<Dim, double>{};
+    auto how = options;
+    if (is_trying) {
+        how.matching_iterations = std::min(how.matching_iterations, iterations_of_a_try);
+    }
+    for (std::size_t v = 0; v < variants.size(); ++v) {
+        unfinished = !add_candidates(variants[v], v, is_trying ? fewer : cases, cases, how, result, origins) || unfinished;
+        result.choice = choose(result.candidates, options);
+        if (unfinished || verdict_on(result.best().held_out, options.limits) == Verdict::good) {
+            break;
+        }
+    }
+    if (!unfinished && is_trying && result.best().trajectory) {
+        const auto& chosen = variants[origins[result.choice.candidate].variant];
+        unfinished = !finish_try(chosen, cases, options, result);
+    }
+    const Stopwatch scoring;
+    unfinished = !score(result.candidates, cases, options) || unfinished;
+    result.seconds[1].second += scoring.seconds();
+    result.choice = choose(result.candidates, options);
+    const Candidate<Dim>& best = result.best();
+    const auto remarks = warnings_on(best);
+    result.warnings.insert(result.warnings.end(), remarks.begin(), remarks.end());
+    result.parts = held_out_parts(best, cases.held_out);
+    result.verdict = unfinished                                 ? Verdict::unfinished
+                     : has_learnt_nothing(best, options.limits) ? Verdict::unusable
+                                                                : verdict_on(best.held_out, options.limits);
+    result.status = unfinished ? Status::interrupted : best.status();
+    if (!unfinished) {
+        warn_of_failures(best, cases, result.warnings);
+        warn_of_error(result, cases, options);
+    }
+}
+
+/// Gives a candidate of a network's own units back in those of what it was made from.
+template <int Dim>
+void restore(Candidate<Dim>& candidate, const Origin& origin, const std::vector<NetworkVariant<Dim>>& variants,
+             const NetworkUnits<Dim>& units) {
+    const auto& given = variants[origin.variant].given;
+    const auto& like = given[origin.given.value_or(0)].network;
+    candidate.network = units.from_own(candidate.network, like);
+    if (origin.given) {
+        candidate.network.stiffness = like.stiffness;
+        candidate.network.volume_stiffness = like.volume_stiffness;
+    }
+    candidate.stiffness_damping *= units.time();
+    if (candidate.acceleration) {
+        const double square = units.acceleration() * units.acceleration();
+        candidate.acceleration->objective_start *= square;
+        candidate.acceleration->objective *= square;
+    }
+}
+
 } // namespace detail
 
 template <int Dim>
 Calibration<Dim> calibrate(const std::vector<NetworkVariant<Dim>>& variants, RecordedCases<Dim, double> cases,
                            const CalibrateOptions& options) {
     require(!variants.empty(), "variants", "a network to start from", "none");
+    for (const auto& variant : variants) {
+        detail::check_given(variant.given, cases, options);
+    }
     Calibration<Dim> result;
     result.warnings = cases.warnings;
     result.seconds = {{"fit", 0.}, {"score", 0.}};
-    require(!variants.front().given.empty(), "given", "a network to start from", "none");
-    result.period = slowest_period(variants.front().given.front().network, cases);
+    const auto& first = variants.front().given.front().network;
+    result.period = slowest_period(first, cases);
     const auto of_units = warnings_of_units(result.period, cases);
     result.warnings.insert(result.warnings.end(), of_units.begin(), of_units.end());
-    bool unfinished = cases.interrupted;
-    std::vector<std::size_t> variant_of; // the candidates
-    const auto fewer = variants.size() > 1 ? detail::cases_of_a_try(cases) : RecordedCases<Dim, double>{};
-    for (std::size_t v = 0; v < variants.size(); ++v) {
-        auto how = options;
-        if (variants.size() > 1) {
-            how.matching_iterations = std::min(how.matching_iterations, detail::iterations_of_a_try);
-        }
-        const auto& learnt = variants.size() > 1 ? fewer : cases;
-        unfinished = !detail::add_candidates(variants[v], learnt, cases, how, result) || unfinished;
-        variant_of.resize(result.candidates.size(), v);
-        result.choice = choose(result.candidates, options);
-        if (unfinished || verdict_on(result.best().held_out, options.limits) == Verdict::good) {
-            break;
+
+    const detail::NetworkUnits<Dim> units(first);
+    auto own = variants;
+    for (auto& variant : own) {
+        for (auto& named : variant.given) {
+            named.network = units.to_own(std::move(named.network));
         }
     }
-    const std::size_t chosen = variant_of[result.choice.candidate];
-    if (!unfinished && variants.size() > 1 && result.best().trajectory) {
-        unfinished = !detail::finish_try(variants[chosen], cases, options, result);
+    std::vector<detail::Origin> origins; // of the candidates
+    detail::try_variants(own, units.to_own(cases), options, result, origins);
+    for (std::size_t c = 0; c < result.candidates.size(); ++c) {
+        detail::restore(result.candidates[c], origins[c], variants, units);
     }
+
     const Candidate<Dim>& best = result.best();
-    const auto remarks = warnings_on(best);
-    result.warnings.insert(result.warnings.end(), remarks.begin(), remarks.end());
-    result.parts = held_out_parts(best, cases.held_out);
-    result.verdict = unfinished                                         ? Verdict::unfinished
-                     : detail::has_learnt_nothing(best, options.limits) ? Verdict::unusable
-                                                                        : verdict_on(best.held_out, options.limits);
-    result.status = unfinished ? Status::interrupted : best.status();
-    if (!unfinished) {
-        detail::warn_of_failures(best, cases, result.warnings);
-        detail::warn_of_error(result, cases, options);
-    }
     result.stable_step = stable_step(best.network, cases.held_out.motions.front().clamped);
     cases.stiffness_damping = best.stiffness_damping;
-    result.damping_ratio =
-        result.period > 0 ? std::numbers::pi * best.stiffness_damping / result.period : 0.;
+    result.damping_ratio = result.period > 0 ? std::numbers::pi * best.stiffness_damping / result.period : 0.;
     result.cases = std::move(cases);
     return result;
 }

@@ -19,6 +19,7 @@ namespace detail {
 
 /// Newton iterations in which a network must come to rest: one that needs more is of no use.
 inline constexpr int scoring_iterations = 60;
+inline constexpr int quick_iterations = 25; ///< the same where it need not be tried hard
 
 /// Elastic energy that motions put into the network, summed over all their frames, J; a preload at rest does not count.
 template <int Dim>
@@ -125,7 +126,7 @@ private:
             const double error =
                 motion_error(
                     m_result.all[c].network, scenarios, statics.motions, {},
-                    {.max_iterations = scoring_iterations, .stop_at_failure = true, .execution = m_options.execution})
+                    {.max_iterations = quick_iterations, .stop_at_failure = true, .execution = m_options.execution})
                     .error;
             if (error < least) {
                 least = error;
@@ -290,11 +291,10 @@ private:
     Candidates<Dim> m_result;
 };
 
-} // namespace detail
-
+/// Throws InvalidArgument for what candidates cannot be made from.
 template <int Dim>
-Candidates<Dim> make_candidates(const std::vector<NamedNetwork<Dim>>& given, const RecordedCases<Dim, double>& cases,
-                                const CalibrateOptions& options) {
+void check_given(const std::vector<NamedNetwork<Dim>>& given, const RecordedCases<Dim, double>& cases,
+                 const CalibrateOptions& options) {
     require(!given.empty(), "given", "a network to start from", "none");
     require(options.zeta >= 0 && std::isfinite(options.zeta), "zeta", "a value not below 0", options.zeta);
     require(!options.start || *options.start < given.size(), "start", text("a number in [0, ", given.size(), ")"),
@@ -317,6 +317,14 @@ Candidates<Dim> make_candidates(const std::vector<NamedNetwork<Dim>>& given, con
                 "none above 0");
     }
     validate(cases, given.front().network.n_nodes());
+}
+
+} // namespace detail
+
+template <int Dim>
+Candidates<Dim> make_candidates(const std::vector<NamedNetwork<Dim>>& given, const RecordedCases<Dim, double>& cases,
+                                const CalibrateOptions& options) {
+    detail::check_given(given, cases, options);
     return detail::CandidateMaker<Dim>(given, cases, options).make();
 }
 

@@ -32,55 +32,139 @@ double error_of_noise(const CaseSet<Dim, double>& set) {
 
 } // namespace detail
 
+namespace detail {
+
+/// Candidates that are tried again in the cases that they failed in, where none is good.
+inline constexpr std::size_t n_tried_again = 3;
+
+/// Root mean square of the errors of the cases that a candidate came through; infinite where there are none.
+inline double error_where_converged(const CaseScores& scores) {
+    double sum = 0;
+    double count = 0;
+    for (std::size_t s = 0; s < scores.errors.size(); ++s) {
+        if (scores.statuses[s] == Status::converged) {
+            sum += scores.errors[s] * scores.errors[s];
+            count += 1;
+        }
+    }
+    return count > 0 ? std::sqrt(sum / count) : std::numeric_limits<double>::infinity();
+}
+
+/// Scores candidates, one part after another.
+template <int Dim>
+class Scorer {
+public:
+    Scorer(std::vector<Candidate<Dim>>& candidates, const RecordedCases<Dim, double>& cases,
+           const CalibrateOptions& options)
+        : m_cases(cases), m_options(options),
+          m_stage(options.progress, "score on motion", 2 * candidates.size() + n_tried_again) {
+        for (auto candidate = candidates.rbegin(); candidate != candidates.rend(); ++candidate) {
+            m_order.push_back(&*candidate);
+            m_best = std::min(m_best, candidate->held_out.error);
+        }
+        // Matched motion first, then the other fits: an early end leaves the best of them judged.
+        std::stable_partition(m_order.begin(), m_order.end(),
+                              [](const auto* candidate) { return candidate->trajectory.has_value(); });
+    }
+
+    /// On the held-out cases, until one fails: most that fail are not worth more.
+    void score() {
+        for (auto* candidate : m_order) {
+            if (!candidate->held_out.is_scored() && !m_stage.stopped()) {
+                candidate->held_out = scores_of(candidate->network, m_cases.held_out, every_held_out(), true);
+                m_best = std::min(m_best, candidate->held_out.error);
+            }
+        }
+    }
+
+    /// Where none is good, those that went best so far in every case, with all that helps.
+    void try_again() {
+        auto order = m_order;
+        std::erase_if(order, [](const auto* candidate) {
+            return candidate->held_out.n_tried() == candidate->held_out.cases.size() &&
+                   candidate->held_out.n_failed() == 0;
+        });
+        std::stable_sort(order.begin(), order.end(), [](const auto* a, const auto* b) {
+            return error_where_converged(a->held_out) < error_where_converged(b->held_out);
+        });
+        order.resize(std::min(order.size(), n_tried_again));
+        for (auto* candidate : order) {
+            if (!(m_best < m_options.limits.fair) && !m_stage.stopped()) {
+                const auto found = scores_of(candidate->network, m_cases.held_out, every_held_out(), false);
+                candidate->held_out = m_stage.stopped() ? candidate->held_out : found;
+                m_best = std::min(m_best, candidate->held_out.error);
+            }
+        }
+    }
+
+    /// On a sample of the training's cases.
+    void score_training() {
+        const auto most = static_cast<std::size_t>(m_options.scored_training_cases);
+        std::vector<std::size_t> numbers;
+        const std::size_t n = m_cases.training.size();
+        for (std::size_t c = 0; most > 0 && c < n; c += (n + most - 1) / most) {
+            numbers.push_back(c);
+        }
+        const auto sample = m_cases.training.subset(numbers);
+        for (auto* candidate : m_order) {
+            if (!numbers.empty() && !candidate->training.is_scored() && !m_stage.stopped()) {
+                const bool is_best = candidate->held_out.error <= m_best;
+                candidate->training = scores_of(candidate->network, sample, numbers, !is_best);
+            }
+        }
+    }
+
+    [[nodiscard]] bool stopped() const { return m_stage.stopped(); }
+
+private:
+    [[nodiscard]] std::vector<std::size_t> every_held_out() const {
+        std::vector<std::size_t> all(m_cases.held_out.size());
+        std::iota(all.begin(), all.end(), std::size_t(0));
+        return all;
+    }
+
+    [[nodiscard]] CaseScores scores_of(const SpringNetwork<Dim, double>& network, const CaseSet<Dim, double>& set,
+                                       const std::vector<std::size_t>& numbers, bool stop_at_failure) {
+        auto found = motion_error(network, set.scenarios(), set.motions, m_stage.part(m_part++),
+                                  {.max_iterations = stop_at_failure ? quick_iterations : scoring_iterations,
+                                   .stop_at_failure = stop_at_failure,
+                                   .execution = m_options.execution});
+        if (m_stage.stopped()) {
+            found.error = std::numeric_limits<double>::infinity();
+        }
+        return CaseScores{found.error, error_of_noise(set), numbers, std::move(found.case_errors),
+                          std::move(found.case_statuses)};
+    }
+
+    const RecordedCases<Dim, double>& m_cases;
+    const CalibrateOptions& m_options;
+    Stage m_stage;
+    std::vector<Candidate<Dim>*> m_order;
+    double m_best = std::numeric_limits<double>::infinity();
+    std::size_t m_part = 0;
+};
+
+/// Scores candidates of a try on held-out cases, until one fails. Returns false where the callback ended it.
+template <int Dim>
+bool score_try(std::vector<Candidate<Dim>>& candidates, const RecordedCases<Dim, double>& cases,
+               const CalibrateOptions& options) {
+    Scorer<Dim> scorer(candidates, cases, options);
+    scorer.score();
+    return !scorer.stopped();
+}
+
+} // namespace detail
+
 template <int Dim>
 bool score(std::vector<Candidate<Dim>>& candidates, const RecordedCases<Dim, double>& cases,
            const CalibrateOptions& options) {
     require(options.scored_training_cases >= 0, "scored_training_cases", "a number not below 0",
             options.scored_training_cases);
-    const auto most = static_cast<std::size_t>(options.scored_training_cases);
-    std::vector<std::size_t> sampled;
-    for (std::size_t c = 0; most > 0 && c < cases.training.size(); c += (cases.training.size() + most - 1) / most) {
-        sampled.push_back(c);
-    }
-    const auto sample = cases.training.subset(sampled);
-    std::vector<std::size_t> all(cases.held_out.size());
-    std::iota(all.begin(), all.end(), std::size_t(0));
-
-    Stage stage(options.progress, "score on motion", 2 * candidates.size());
-    std::size_t part = 0;
-    const auto scores_of = [&](const SpringNetwork<Dim, double>& network, const CaseSet<Dim, double>& set,
-                               const std::vector<std::size_t>& numbers, bool stop_at_failure) {
-        auto found = motion_error(network, set.scenarios(), set.motions, stage.part(part++),
-                                  {.max_iterations = detail::scoring_iterations,
-                                   .stop_at_failure = stop_at_failure,
-                                   .execution = options.execution});
-        if (stage.stopped()) {
-            found.error = std::numeric_limits<double>::infinity();
-        }
-        return CaseScores{found.error, detail::error_of_noise(set), numbers, std::move(found.case_errors),
-                          std::move(found.case_statuses)};
-    };
-    // Matched motion first, then the other fits: an early end leaves the best of them judged.
-    std::vector<Candidate<Dim>*> order;
-    for (auto candidate = candidates.rbegin(); candidate != candidates.rend(); ++candidate) {
-        order.push_back(&*candidate);
-    }
-    std::stable_partition(order.begin(), order.end(), [](const auto* candidate) { return candidate->trajectory; });
-    double best = std::numeric_limits<double>::infinity();
-    for (auto* candidate : order) {
-        if (!stage.stopped()) { // beside a good network nobody waits for one that fails to be tried again and again
-            candidate->held_out = scores_of(candidate->network, cases.held_out, all, best < options.limits.fair);
-            best = std::min(best, candidate->held_out.error);
-        }
-    }
-    for (auto* candidate : order) {
-        if (!sampled.empty() && !stage.stopped()) {
-            const bool is_good = candidate->held_out.error < options.limits.fair;
-            candidate->training =
-                scores_of(candidate->network, sample, sampled, !is_good && best < options.limits.fair);
-        }
-    }
-    return !stage.stopped();
+    detail::Scorer<Dim> scorer(candidates, cases, options);
+    scorer.score();
+    scorer.try_again();
+    scorer.score_training();
+    return !scorer.stopped();
 }
 
 namespace detail {

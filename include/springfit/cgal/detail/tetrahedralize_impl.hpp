@@ -6,6 +6,7 @@
 #include <springfit/cgal/detail/size_search.hpp>
 #include <springfit/cgal/detail/solid_mesher.hpp>
 #include <springfit/cgal/detail/solid_surface.hpp>
+#include <springfit/cgal/detail/body_unit.hpp>
 #include <springfit/cgal/tetrahedralize.hpp>
 
 namespace springfit::cgal {
@@ -121,8 +122,14 @@ void check_result(const Mesh<3, Scalar, Tet4>& mesh, const TetrahedralizeOptions
 }
 
 template <std::floating_point Scalar>
-[[nodiscard]] Mesh<3, Scalar, Tet4> tetrahedralize(const SolidSurface& surface, const TetrahedralizeOptions& options,
+[[nodiscard]] Mesh<3, Scalar, Tet4> tetrahedralize(SolidSurface surface, TetrahedralizeOptions options,
                                                    std::string_view name) {
+    const double unit = body_unit<3>(surface.surface.nodes);
+    surface.surface.nodes = in_unit<3>(surface.surface.nodes, unit);
+    surface.volume = in_unit(surface.volume, unit * unit * unit);
+    surface.area = in_unit(surface.area, unit * unit);
+    options.cell_size /= unit;
+    options.surface_distance /= unit;
     Solid solid;
     try {
         solid = without_flakes(refined_solid(surface, options), flake_angle);
@@ -134,6 +141,7 @@ template <std::floating_point Scalar>
     }
     Mesh<3, Scalar, Tet4> mesh{solid.nodes.cast<Scalar>(), solid.cells};
     check_result(mesh, options);
+    mesh.nodes *= static_cast<Scalar>(unit);
     return mesh;
 }
 

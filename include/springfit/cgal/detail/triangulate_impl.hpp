@@ -7,6 +7,7 @@
 
 #include <boost/geometry/algorithms/within.hpp>
 
+#include <springfit/cgal/detail/body_unit.hpp>
 #include <springfit/cgal/detail/mesh_2.hpp>
 #include <springfit/cgal/detail/outline_file.hpp>
 #include <springfit/cgal/detail/pieces.hpp>
@@ -37,13 +38,17 @@ inline void check(const TriangulateOptions& options) {
 }
 
 template <std::floating_point Scalar>
-[[nodiscard]] Mesh<2, Scalar, Tri3> triangulate(const Outline& given, const TriangulateOptions& options,
+[[nodiscard]] Mesh<2, Scalar, Tri3> triangulate(const Outline& given, TriangulateOptions options,
                                                 std::string_view name) {
-    const Outline outline = checked(given, name);
+    Outline outline = checked(given, name);
+    const double unit = body_unit<2>(outline.points);
+    outline.points = in_unit<2>(outline.points, unit);
+    outline.holes = in_unit<2>(outline.holes, unit);
+    options.cell_size /= unit;
     PlaneMesher mesher(plane_graph(outline));
     for (Index h = 0; h < outline.holes.cols(); ++h) {
         require(mesher.empty_at({outline.holes(0, h), outline.holes(1, h)}), name, "a hole's point inside the outline",
-                text("hole ", h, " at (", outline.holes.col(h).transpose(), ")"));
+                text("hole ", h, " at (", given.holes.col(h).transpose(), ")"));
     }
     const double area = mesher.area();
     require(area > 0, name, "an outline around an area", "none that is not a hole");
@@ -67,6 +72,7 @@ template <std::floating_point Scalar>
         const Index pieces = n_pieces(mesh);
         require(pieces == 1, name, "an outline of one piece (several_pieces accepts more)", text(pieces, " pieces"));
     }
+    mesh.nodes *= static_cast<Scalar>(unit);
     return mesh;
 }
 
@@ -135,7 +141,7 @@ SPRINGFIT_CGAL_INLINE Outline read_outline(const std::filesystem::path& path) {
         throw FileError(name, "unknown kind of outline file '" + extension + "'; .poly and .wkt are read");
     }
     detail::require_readable(path);
-    const detail::OutlineFile file = extension == ".poly" ? detail::read_poly(path) : detail::read_wkt(path);
+    detail::OutlineFile file = extension == ".poly" ? detail::read_poly(path) : detail::read_wkt(path);
     if (file.segments.empty()) {
         throw FileError(name, "empty outline: no segments");
     }
@@ -151,12 +157,24 @@ SPRINGFIT_CGAL_INLINE Outline read_outline(const std::filesystem::path& path) {
     columns(file.holes, outline.holes);
     outline = checked(outline, name);
     if (!file.areas.empty()) { // what lies in none of the areas is a hole
+        const double unit = detail::body_unit<2>(outline.points);
+        const auto in_unit = [unit](auto& ring) {
+            for (auto& point : ring) {
+                point = {detail::in_unit(point.x(), unit), detail::in_unit(point.y(), unit)};
+            }
+        };
+        for (auto& area : file.areas) {
+            in_unit(area.outer());
+            std::for_each(area.inners().begin(), area.inners().end(), in_unit);
+        }
+        Outline scaled = outline;
+        scaled.points = detail::in_unit<2>(outline.points, unit);
         std::vector<std::array<double, 2>> holes;
-        for (const auto& point : detail::PlaneMesher(detail::plane_graph(outline)).region_points()) {
+        for (const auto& point : detail::PlaneMesher(detail::plane_graph(scaled)).region_points()) {
             const detail::OutlineFile::Point p(point.x(), point.y());
             if (std::none_of(file.areas.begin(), file.areas.end(),
                              [&](const auto& area) { return boost::geometry::within(p, area); })) {
-                holes.push_back({point.x(), point.y()});
+                holes.push_back({point.x() * unit, point.y() * unit});
             }
         }
         columns(holes, outline.holes);

@@ -54,8 +54,8 @@ public:
     CaseSimulator(const SpringNetwork<Dim, Scalar>& network, const Scenarios& scenarios, const Motions& references,
                   const MotionErrorOptions<Scalar>& options)
         : m_network(network), m_scenarios(scenarios), m_references(references), m_options(options),
-          m_explicit(network,
-                     {.step_fraction = options.step_fraction, .max_substeps = most_substeps(network, options)}),
+          m_most_substeps(most_substeps(network, options)),
+          m_explicit(network, {.step_fraction = options.step_fraction, .max_substeps = m_most_substeps}),
           m_stiffness(network, scenarios, references, options.execution) {}
 
     /// Calls `visit(frame, positions)` for each frame of a case, again from the first where another way is tried; stops
@@ -81,7 +81,7 @@ private:
         how.start = m_references[c].positions.front();
         const auto& springs = *m_stiffness.held[m_stiffness.of_case[c]];
         auto found = equilibrium(springs, m_scenarios[c], how, false);
-        if (found.status != Status::converged) {
+        if (found.status != Status::converged && !m_options.stop_at_failure) {
             how.start.resize(Dim, 0);
             found = equilibrium(springs, m_scenarios[c], how, false);
         }
@@ -96,7 +96,7 @@ private:
 
     /// Follows the equilibrium while the loads grow.
     [[nodiscard]] Equilibrium<Dim, Scalar> rest_by_steps(std::size_t c, EquilibriumOptions<Dim, Scalar> how) const {
-        constexpr int n_steps = 8;
+        constexpr int n_steps = 4;
         Equilibrium<Dim, Scalar> found;
         for (int step = 1; step <= n_steps; ++step) {
             auto part = m_scenarios[c];
@@ -119,16 +119,23 @@ private:
             substeps += time > before ? m_explicit.n_substeps(time - before) : 0;
             before = time;
         }
-        Status status = Status::iteration_limit;
-        if (substeps * static_cast<double>(m_network.n_springs() + m_network.n_cells()) <=
-            m_options.most_explicit_work) {
-            auto stepper = m_explicit;
+        const bool is_short = substeps * static_cast<double>(m_network.n_springs() + m_network.n_cells()) <=
+                              m_options.most_explicit_work;
+        if (!is_short) {
+            return move_implicitly(c, visit);
+        }
+        Status status = Status::failed;
+        for (const Scalar fraction : {m_options.step_fraction, m_options.step_fraction / 4}) {
+            SymplecticEuler<Dim, Scalar> stepper(m_network,
+                                                 {.step_fraction = fraction, .max_substeps = m_most_substeps});
             status = for_frames<Dim, Scalar>(
                 stepper, m_scenarios[c], times, std::numeric_limits<int>::max(),
                 [&](std::size_t frame, const State<Dim, Scalar>& state) { return visit(frame, state.positions); });
+            if (status == Status::converged || status == Status::interrupted || m_options.stop_at_failure) {
+                break;
+            }
         }
-        const bool is_done = status == Status::converged || status == Status::interrupted;
-        return is_done || m_options.stop_at_failure ? status : move_implicitly(c, visit);
+        return status;
     }
 
     /// The error of implicit Euler is about h times something: x(h / 2) + (x(h / 2) - x(h)) is of second order.
@@ -169,7 +176,8 @@ private:
     const Scenarios& m_scenarios;
     const Motions& m_references;
     MotionErrorOptions<Scalar> m_options;
-    SymplecticEuler<Dim, Scalar> m_explicit; ///< to copy
+    int m_most_substeps;
+    SymplecticEuler<Dim, Scalar> m_explicit; ///< tells how many steps it takes
     StiffnessByClamps<Dim, Scalar> m_stiffness;
 };
 
