@@ -137,9 +137,9 @@ refused("reference with other node count",
 bodies.write_motion(folder / "no-displacement.h5", points, triangles, times, displacement,
                     leave_out=["/reference/displacement"])
 refused("missing column", ["fit", folder / "no-displacement.h5", *MATERIAL], ["/reference/displacement"])
-displacement[3, 2, 1] = numpy.nan
-bodies.write_motion(folder / "nan.h5", points, triangles, times, displacement)
-refused("NaN in a motion", ["fit", folder / "nan.h5", *MATERIAL], ["nan.h5", "/reference/displacement"])
+displacement[3, 2, 1] = numpy.inf
+bodies.write_motion(folder / "inf.h5", points, triangles, times, displacement)
+refused("infinity in a motion", ["fit", folder / "inf.h5", *MATERIAL], ["inf.h5", "/reference/displacement"])
 refused("meshing option for a motion", ["fit", folder / "strip.h5", *MATERIAL, "--nodes", "100"], ["--nodes"])
 refused("finer reference for a motion", ["fit", folder / "strip.h5", *MATERIAL, "--reference-nodes", "2000"],
         ["--reference-nodes", "recorded motion"])

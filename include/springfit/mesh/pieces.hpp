@@ -25,7 +25,8 @@ namespace springfit {
         return node;
     };
     for (Index p = 0; p < pairs.cols(); ++p) {
-        const auto [low, high] = std::minmax(pairs(0, p), pairs(1, p));
+        const int low = pairs.col(p).minCoeff();
+        const int high = pairs.col(p).maxCoeff();
         require(low >= 0 && high < n_nodes, "pairs", text("node numbers in [0, ", n_nodes, ")"), low < 0 ? low : high);
         root[static_cast<std::size_t>(find(high))] = find(low);
     }

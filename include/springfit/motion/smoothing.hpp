@@ -51,7 +51,8 @@ inline double noise_in_time(const DenseMatrix<double>& u) {
 /// The noise by the singular values of the displacements: those of a smooth motion fall to nothing, those of m x n
 /// independent numbers lie in sigma (sqrt m -+ sqrt n). The lower quartile is that of a semicircle.
 inline double noise_in_space(const DenseMatrix<double>& u) {
-    const auto [n, m] = std::minmax(u.rows(), u.cols());
+    const Index n = std::min(u.rows(), u.cols());
+    const Index m = std::max(u.rows(), u.cols());
     const DenseMatrix<double> gram = u.cols() <= u.rows() ? DenseMatrix<double>(u.transpose() * u) : u * u.transpose();
     const Values<double> squares = Eigen::SelfAdjointEigenSolver<DenseMatrix<double>>(gram, Eigen::EigenvaluesOnly)
                                        .eigenvalues(); // ascending

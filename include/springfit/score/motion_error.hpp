@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <mutex>
+#include <numeric>
 
 #include <springfit/score/detail/case_simulator.hpp>
 
@@ -136,14 +137,21 @@ motion_error(const SpringNetwork<Dim, Scalar>& network, const std::vector<Scenar
     std::mutex reporting;
     double n_done = 0;
     std::atomic<bool> stopped = false;
-    std::atomic<Index> first_failed = static_cast<Index>(references.size()); // in their order, whoever runs them
+    std::vector<std::size_t> order(references.size());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    if (options.stop_at_failure) {
+        std::stable_partition(order.begin(), order.end(),
+                              [&](std::size_t c) { return references[c].n_frames() == 1; });
+    }
+    std::atomic<Index> first_failed = static_cast<Index>(references.size()); // place in the order, whoever runs it
     const auto add_done = [&](double frames) {
         const std::scoped_lock lock(reporting);
         n_done += frames;
         stopped = stopped || !go_on(progress, "score", n_done / n_frames);
         return !stopped;
     };
-    const auto score_case = [&](std::size_t c) {
+    const auto score_case = [&](Index place) {
+        const std::size_t c = order[static_cast<std::size_t>(place)];
         const auto& reference = references[c];
         double compared = 0; // frames, in the present try
         const auto compare = [&](std::size_t frame, const Points<Dim, Scalar>& positions) {
@@ -163,20 +171,20 @@ motion_error(const SpringNetwork<Dim, Scalar>& network, const std::vector<Scenar
             sums[c].set_failed(reference, free[c]);
             (void)add_done(static_cast<double>(reference.n_frames()) - compared);
             Index before = first_failed;
-            while (static_cast<Index>(c) < before &&
-                   !first_failed.compare_exchange_weak(before, static_cast<Index>(c))) {
+            while (place < before && !first_failed.compare_exchange_weak(before, place)) {
             }
         }
     };
     options.execution.for_chunks(static_cast<Index>(references.size()), 1, [&](Index, Index begin, Index end) {
-        for (Index c = begin; c < end && !stopped; ++c) {
-            if (!options.stop_at_failure || c < first_failed) {
-                score_case(static_cast<std::size_t>(c));
+        for (Index place = begin; place < end && !stopped; ++place) {
+            if (!options.stop_at_failure || place < first_failed) {
+                score_case(place);
             }
         }
     });
     if (options.stop_at_failure) {
-        for (auto c = static_cast<std::size_t>(first_failed) + 1; c < references.size(); ++c) {
+        for (auto place = static_cast<std::size_t>(first_failed) + 1; place < references.size(); ++place) {
+            const std::size_t c = order[place];
             sums[c].set_failed(references[c], free[c]);
             statuses[c] = Status::interrupted;
         }

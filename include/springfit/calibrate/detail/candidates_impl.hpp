@@ -155,6 +155,7 @@ private:
         how.execution = m_options.execution;
         how.prior_weight = m_options.prior_weight;
         if (in_time) {
+            check_frames(prior, motions);
             how.horizon = m_options.horizon;
             how.steps_per_frame =
                 m_options.steps_per_frame > 0 ? m_options.steps_per_frame : steps_per_frame(motions, how.horizon);
@@ -162,7 +163,9 @@ private:
         }
         Stage stage(m_options.progress, "fit trajectory");
         if (in_time && m_options.damping == DampingRule::proportional && !m_knows_damping) {
-            m_stiffness_damping = find_damping(prior, motions, how, m_options.damping_ratio, stage.part());
+            const auto found = find_damping(prior, motions, how, m_options.damping_ratio, stage.part());
+            m_stiffness_damping = found.beta;
+            m_start = found.theta;
             for (auto& candidate : m_result.all) {
                 set_damping(candidate.network);
             }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 
 #include <springfit/core/stage.hpp>
 #include <springfit/fit/trajectory/gauss_newton.hpp>
@@ -70,30 +71,37 @@ std::pair<double, double> least_value(double low, double high, const Function& f
     return at_a < at_b ? std::pair{std::exp(a), at_a} : std::pair{std::exp(b), at_b};
 }
 
-/// The beta of D = beta K, s, that is best in the windows of motions, stiffness being matched without damping first; 0
-/// where none gains a tenth. (Whole motions out of phase would call for damping.) With a `ratio` of critical it is that
-/// of the network's slowest motion.
+/// The damping that was found, and where matching may go on from.
+struct FoundDamping {
+    double beta = 0;      ///< of D = beta K, s
+    Values<double> theta; ///< of matching without damping; empty where that failed
+};
+
+/// The beta of D = beta K that is best in the windows of at most two motions, stiffness being matched without damping
+/// first; 0 where none gains a tenth. (Whole motions out of phase would call for damping.) With a `ratio` of critical it
+/// is that of the network's slowest motion.
 template <int Dim>
-double find_damping(SpringNetwork<Dim, double> network, const std::vector<Motion<Dim, double>>& motions,
-                    TrajectoryOptions how, const std::optional<double>& ratio, const ProgressCallback& progress) {
+FoundDamping find_damping(SpringNetwork<Dim, double> network, const std::vector<Motion<Dim, double>>& all,
+                          TrajectoryOptions how, const std::optional<double>& ratio, const ProgressCallback& progress) {
+    std::vector<Motion<Dim, double>> motions;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(motions),
+                 [&](const auto& motion) { return motion.n_frames() > 1 && motions.size() < 2; });
     how.parameters.damping_per_stiffness = 0;
     network.damping.setZero();
     const TrajectoryProblem<Dim> problem(network, motions, how);
-    GaussNewtonOptions engine;
-    engine.max_iterations = 12;
-    engine.tolerance = 0.01;
-    engine.progress = progress;
-    if (const auto report = gauss_newton(problem, engine); usable(report.status)) {
+    FoundDamping found;
+    const auto report = gauss_newton(problem, {.max_iterations = 8, .tolerance = 0.02, .progress = progress});
+    if (usable(report.status)) {
         apply(problem, report, network);
+        found.theta = report.theta;
     }
-    const auto first =
-        std::find_if(motions.begin(), motions.end(), [](const auto& motion) { return motion.n_frames() > 1; });
-    const double omega = lowest_frequency(network, first->clamped).omega;
+    const double omega = lowest_frequency(network, motions.front().clamped).omega;
     if (!(omega > 0)) {
-        return 0;
+        return found;
     }
     if (ratio) {
-        return 2 * *ratio / omega;
+        found.beta = 2 * *ratio / omega;
+        return found;
     }
     const auto misfit = [&](double zeta) {
         how.parameters.damping_per_stiffness = 2 * zeta / omega;
@@ -101,7 +109,22 @@ double find_damping(SpringNetwork<Dim, double> network, const std::vector<Motion
         return window_misfit(network, motions, how);
     };
     const auto [zeta, least] = least_value(0.001, 0.5, misfit);
-    return least < 0.9 * misfit(0) ? 2 * zeta / omega : 0.;
+    found.beta = least < 0.9 * misfit(0) ? 2 * zeta / omega : 0.;
+    return found;
+}
+
+/// Throws InvalidArgument for frames that are more than two of the network's slowest periods apart: they do not show how
+/// it moves.
+template <int Dim>
+void check_frames(const SpringNetwork<Dim, double>& network, const std::vector<Motion<Dim, double>>& motions) {
+    for (const auto& motion : motions) {
+        const double gap = motion.n_frames() > 1 ? (motion.times.back() - motion.times.front()) /
+                                                       static_cast<double>(motion.n_frames() - 1)
+                                                 : 0.;
+        const double turns = gap * lowest_frequency(network, motion.clamped).omega / (2 * std::numbers::pi);
+        require(turns <= 2, text("motion '", motion.name, "'"),
+                "frames at most two of the body's slowest periods apart", text(turns, " periods"));
+    }
 }
 
 } // namespace springfit::detail
