@@ -124,10 +124,11 @@ Mesh<2, double, Tri3> plate_with_hole(Index n_nodes) {
 } // namespace
 
 void study_strangers(Report& report, const Settings& settings) {
-    report.begin("strangers", "Bodies of strangers, with the defaults",
-                 "What `springfit fit BODY --young 5e4 --poisson NU --density 1000` does with bodies that nothing was "
-                 "tuned on: slender, thin, in pieces, with holes, and surfaces from CGAL's demo data. Held at the lowest "
-                 "5 % in y.");
+    report.begin(
+        "strangers", "Bodies of strangers, with the defaults",
+        "What `springfit fit BODY --young 5e4 --poisson NU --density 1000` does with bodies that nothing was "
+        "tuned on: slender, thin, in pieces, with holes, and surfaces from CGAL's demo data. Held at the lowest "
+        "5 % in y.");
     Newcomer newcomer(report, settings);
     const auto box = [&](const char* name, const std::array<double, 3>& size, Index n_nodes, double poisson) {
         newcomer.try_body(name, box_mesh(size, n_nodes), poisson);

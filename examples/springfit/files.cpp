@@ -19,8 +19,8 @@ Values<double> read_masses(const std::string& path, Index n_nodes) {
         const auto file = io::hdf5::File::open(path);
         const io::hdf5::Shape expected{static_cast<hsize_t>(n_nodes)};
         if (const auto found = file.shape("/mesh/mass"); found != expected) {
-            file.refuse("/mesh/mass", text("expected one mass for each of ", n_nodes, " nodes, found ",
-                                           io::hdf5::to_text(found)));
+            file.refuse("/mesh/mass",
+                        text("expected one mass for each of ", n_nodes, " nodes, found ", io::hdf5::to_text(found)));
         }
         file.read("/mesh/mass", masses.data(), expected);
     } else {
@@ -65,8 +65,8 @@ io::RecordedMotion<Dim, double> read_recorded(const std::string& path, const Fit
         for (const auto& frame : gaps) {
             n += frame.size();
         }
-        const double percent = 100 * static_cast<double>(n) /
-                               static_cast<double>(recorded.motion.n_frames() * recorded.motion.n_nodes());
+        const double percent =
+            100 * static_cast<double>(n) / static_cast<double>(recorded.motion.n_frames() * recorded.motion.n_nodes());
         warnings.push_back({.code = WarningCode::unobserved,
                             .about = path,
                             .message = text(path, ": ", n, " positions of nodes (", percent,

@@ -12,9 +12,8 @@ namespace program {
 
 /// A recorded motion in SI units, by `--unit` and `--time-unit`, with what there is to say of it.
 template <int Dim>
-[[nodiscard]] springfit::io::RecordedMotion<Dim, double> read_recorded(const std::string& path,
-                                                                       const FitOptions& options,
-                                                                       std::vector<springfit::Warning>& warnings);
+[[nodiscard]] springfit::io::RecordedMotion<Dim, double>
+read_recorded(const std::string& path, const FitOptions& options, std::vector<springfit::Warning>& warnings);
 
 /// The masses of the nodes, kg, that `--mass-from` names. Throws FileError.
 [[nodiscard]] springfit::Values<double> read_masses(const std::string& path, springfit::Index n_nodes);

@@ -292,7 +292,8 @@ private:
         const Index n = n_coinciding(m_body.network.rest_positions);
         std::fprintf(stderr, "%s: the body is in %zu pieces, of %s%s nodes; %lld points coincide with another%s\n",
                      m_options.input.c_str(), sizes.size(), list.c_str(), sizes.size() > 8 ? ", ..." : "",
-                     static_cast<long long>(n), n > 0 ? ": merge them in the mesher where the pieces hold together" : "");
+                     static_cast<long long>(n),
+                     n > 0 ? ": merge them in the mesher where the pieces hold together" : "");
     }
 
     /// The body and the recording, before the long work: what is in another unit shows.
@@ -304,8 +305,8 @@ private:
             extent += text(" x ", size(d));
         }
         const double period = slowest_period(m_variants.front().given.front().network, cases);
-        std::printf("the body: %s m, %.4g kg, slowest period about %.4g s\n", extent.c_str(),
-                    m_body.network.mass.sum(), period);
+        std::printf("the body: %s m, %.4g kg, slowest period about %.4g s\n", extent.c_str(), m_body.network.mass.sum(),
+                    period);
         if (const double recorded = recorded_time(cases); recorded > 0) {
             std::printf("recorded: %.4g s in %lld frames\n", recorded,
                         static_cast<long long>(cases.held_out.motions.front().n_frames()));

@@ -49,16 +49,18 @@ void declare_fit(CLI::App& app, program::FitOptions& options) {
         ->group(reference);
     add_optional(app, "--thickness", options.thickness, "thickness of a plane body or membrane, m (default 1)")
         ->group(reference);
-    add_optional(app, "--damping-ratio", options.damping_ratio,
-                 "damping of the body's slowest motion, as a part of critical (default: of the FEM so light that it takes "
-                 "a quarter of the explicit step, of recordings found with the fit)")
+    add_optional(
+        app, "--damping-ratio", options.damping_ratio,
+        "damping of the body's slowest motion, as a part of critical (default: of the FEM so light that it takes "
+        "a quarter of the explicit step, of recordings found with the fit)")
         ->group(reference);
     app.add_option("--reference", options.references,
                    "recorded motion of the same nodes (.xdmf .h5), in place of the FEM; may be given several times")
         ->group(reference);
 
-    app.add_option("--mass-from", options.mass_from,
-                   "file with the masses of the nodes, kg: a model.json, or HDF5 with /mesh/mass (default: by --density)")
+    app.add_option(
+           "--mass-from", options.mass_from,
+           "file with the masses of the nodes, kg: a model.json, or HDF5 with /mesh/mass (default: by --density)")
         ->group(reference);
     app.add_option_function<std::vector<double>>(
            "--gravity", [&options](const std::vector<double>& g) { options.gravity = g; },
@@ -140,8 +142,9 @@ void declare_fit(CLI::App& app, program::FitOptions& options) {
         ->group(fit);
     app.add_flag("--volume", options.volume, "cells that hold their volume, too; for nearly incompressible materials")
         ->group(fit);
-    add_optional(app, "--fit-seconds", options.fit_seconds,
-                 "end matching of motion after this time, s; the result then depends on the machine (default: no limit)")
+    add_optional(
+        app, "--fit-seconds", options.fit_seconds,
+        "end matching of motion after this time, s; the result then depends on the machine (default: no limit)")
         ->group(fit);
     app.add_option("--threads", options.threads, "threads, 0 for all")->capture_default_str()->group(fit);
 }

@@ -46,7 +46,7 @@ using ExactSolver = std::function<AccelerationReport(const AccelerationProblem&,
 struct CalibrateOptions {
     Method method = Method::automatic;
     DampingRule damping = DampingRule::proportional;
-    double zeta = 0.05;         ///< of DampingRule::ratio, >= 0
+    double zeta = 0.05; ///< of DampingRule::ratio, >= 0
     /// Damping of the slowest motion, as a part of critical, in [0, 1), of DampingRule::proportional where cases do not
     /// know theirs; none: it is found with the fit.
     std::optional<double> damping_ratio{};
@@ -71,8 +71,8 @@ struct CalibrateOptions {
     std::optional<double> matching_seconds{};
 
     int scored_training_cases = 8; ///< at most, evenly spread, >= 0: what a fit has seen says little
-    double near_equal = 1.2;        ///< of networks whose errors differ by less than this factor, the one with fewer
-                                    ///< springs and cells is returned, >= 1
+    double near_equal = 1.2;       ///< of networks whose errors differ by less than this factor, the one with fewer
+                                   ///< springs and cells is returned, >= 1
     VerdictLimits limits{};
 
     Execution execution{};

@@ -29,8 +29,8 @@ template <int Dim>
     return longest;
 }
 
-/// The warning that a recording is more than 100 times longer or shorter than the body's slowest period, as one in other
-/// units is [our definition]; none else.
+/// The warning that a recording is more than 100 times longer or shorter than the body's slowest period, as one in
+/// other units is [our definition]; none else.
 template <int Dim>
 [[nodiscard]] std::vector<Warning> warnings_of_units(double period, const RecordedCases<Dim, double>& cases) {
     constexpr double far = 100;
@@ -40,8 +40,7 @@ template <int Dim>
     }
     return {{.code = WarningCode::other_unit,
              .about = cases.held_out.motions.front().name,
-             .message =
-                 text("the recording lasts ", recorded, " s, the body's slowest period is about ", period, " s"),
+             .message = text("the recording lasts ", recorded, " s, the body's slowest period is about ", period, " s"),
              .advice = "lengths must be in m and times in s (--unit mm, --time-unit ms)",
              .values = {{"recorded", recorded}, {"period", period}}}};
 }

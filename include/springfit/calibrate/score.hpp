@@ -7,8 +7,8 @@
 
 namespace springfit {
 
-/// Fills in the errors of every candidate that has none yet on the held-out cases, and then on a sample of the training's:
-/// matched motion first, other fits, then the given networks.
+/// Fills in the errors of every candidate that has none yet on the held-out cases, and then on a sample of the
+/// training's: matched motion first, other fits, then the given networks.
 ///
 /// A case that a candidate fails in counts as 1, and those after it are not tried: they count as 1, too. Where no
 /// candidate comes out good, the three that went best are tried again in every case, with all that helps

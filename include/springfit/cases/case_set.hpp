@@ -150,9 +150,9 @@ template <int Dim, std::floating_point Scalar>
 /// A motion of one frame, or of equal ones, is an equilibrium. Of several motions, and of several equilibria, the last
 /// quarter is held out, at least one; of a single motion the last third of its time where there is nothing else to hold
 /// out. Equilibria that repeat an earlier one are left out, and motions with uneven frames are resampled, both with a
-/// warning. Of a motion with noise (`noise_level` above 0.3 % of its displacements), what is learnt from is smoothed, and
-/// what judges stays as it was recorded but starts from the smoothed state. Throws InvalidArgument for none, for a motion of fewer than 4 frames, and where nothing is left to judge
-/// by.
+/// warning. Of a motion with noise (`noise_level` above 0.3 % of its displacements), what is learnt from is smoothed,
+/// and what judges stays as it was recorded but starts from the smoothed state. Throws InvalidArgument for none, for a
+/// motion of fewer than 4 frames, and where nothing is left to judge by.
 template <int Dim, std::floating_point Scalar>
 [[nodiscard]] RecordedCases<Dim, Scalar> split_motions(std::vector<Motion<Dim, Scalar>> motions) {
     require(!motions.empty(), "motions", "at least one", "none");

@@ -75,7 +75,7 @@ private:
     Stiffness<Dim, Scalar> m_damping;   ///< K over all nodes, at m_damping_at; only with stiffness damping
     Nodes m_damping_at;
     CorotatedSolver<Dim, Scalar> m_solver;
-    Scalar m_factor_step = 0; ///< time step that its factor is for, s; 0: there is none
+    Scalar m_factor_step = 0;  ///< time step that its factor is for, s; 0: there is none
     State<Dim, Scalar> m_last; ///< the state left by the last step, its acceleration that of the method (A)
     Scalar m_stiffest = 0;     ///< largest diagonal entry of the stiffness at rest, N/m
     int m_iterations = 0;

@@ -54,8 +54,8 @@ inline double noise_in_space(const DenseMatrix<double>& u) {
     const Index n = std::min(u.rows(), u.cols());
     const Index m = std::max(u.rows(), u.cols());
     const DenseMatrix<double> gram = u.cols() <= u.rows() ? DenseMatrix<double>(u.transpose() * u) : u * u.transpose();
-    const Values<double> squares = Eigen::SelfAdjointEigenSolver<DenseMatrix<double>>(gram, Eigen::EigenvaluesOnly)
-                                       .eigenvalues(); // ascending
+    const Values<double> squares =
+        Eigen::SelfAdjointEigenSolver<DenseMatrix<double>>(gram, Eigen::EigenvaluesOnly).eigenvalues(); // ascending
     constexpr double quartile = -0.404; // of the semicircle on [-1, 1]
     const double beta = std::sqrt(static_cast<double>(n) / static_cast<double>(m));
     const double quarter = std::max(squares(n / 4), 0.);
@@ -130,8 +130,7 @@ template <int Dim, std::floating_point Scalar>
     }
     DenseMatrix<double> u = detail::displacements(motion, free);
     const double sigma = static_cast<double>(noise);
-    const double edge =
-        sigma * (std::sqrt(static_cast<double>(u.rows())) + std::sqrt(static_cast<double>(u.cols())));
+    const double edge = sigma * (std::sqrt(static_cast<double>(u.rows())) + std::sqrt(static_cast<double>(u.cols())));
     const Eigen::SelfAdjointEigenSolver<DenseMatrix<double>> principal(DenseMatrix<double>(u.transpose() * u));
     const detail::Smoother smooth(u.cols());
     DenseMatrix<double> estimate = DenseMatrix<double>::Zero(u.rows(), u.cols());

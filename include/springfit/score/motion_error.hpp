@@ -11,8 +11,9 @@ namespace springfit {
 
 /// The error of motions beside their references.
 struct MotionError {
-    /// sqrt( sum |x - x_ref|^2 / sum |x_ref - x_rest|^2 ) over the free nodes that were seen, frames and cases of the set: 0 is the
-    /// reference itself, 1 as bad as not moving at all. A case that cannot be simulated to its end counts as 1.
+    /// sqrt( sum |x - x_ref|^2 / sum |x_ref - x_rest|^2 ) over the free nodes that were seen, frames and cases of the
+    /// set: 0 is the reference itself, 1 as bad as not moving at all. A case that cannot be simulated to its end counts
+    /// as 1.
     double error = 0;
     Status status = Status::converged; ///< of the first case that failed; without one, `interrupted` where it was
     std::vector<double> case_errors;   ///< the same of each case on its own
@@ -109,10 +110,10 @@ template <int Dim, std::floating_point Scalar>
 /// The sums run over the nodes that are not clamped in the reference. An equilibrium is looked for from the reference's
 /// positions, then from the scenario's start, then in load steps. A motion in time is stepped explicitly (symplectic
 /// Euler), where it diverges in shorter steps; where the stable step is so short that this would take long, implicitly
-/// (implicit Euler of two step lengths, extrapolated). A case that fails in all of these counts as 1, and its status says why. So
-/// does a motion that stops half way: a network is not scored on the part that it survives. Interrupted, the error is
-/// that of the frames compared so far. Throws InvalidArgument for scenarios, references and network that do not fit
-/// together. O(springs x sub-steps), no frame is kept.
+/// (implicit Euler of two step lengths, extrapolated). A case that fails in all of these counts as 1, and its status
+/// says why. So does a motion that stops half way: a network is not scored on the part that it survives. Interrupted,
+/// the error is that of the frames compared so far. Throws InvalidArgument for scenarios, references and network that
+/// do not fit together. O(springs x sub-steps), no frame is kept.
 template <int Dim, std::floating_point Scalar>
 [[nodiscard]] MotionError
 motion_error(const SpringNetwork<Dim, Scalar>& network, const std::vector<Scenario<Dim, Scalar>>& scenarios,
@@ -140,8 +141,7 @@ motion_error(const SpringNetwork<Dim, Scalar>& network, const std::vector<Scenar
     std::vector<std::size_t> order(references.size());
     std::iota(order.begin(), order.end(), std::size_t(0));
     if (options.stop_at_failure) {
-        std::stable_partition(order.begin(), order.end(),
-                              [&](std::size_t c) { return references[c].n_frames() == 1; });
+        std::stable_partition(order.begin(), order.end(), [&](std::size_t c) { return references[c].n_frames() == 1; });
     }
     std::atomic<Index> first_failed = static_cast<Index>(references.size()); // place in the order, whoever runs it
     const auto add_done = [&](double frames) {

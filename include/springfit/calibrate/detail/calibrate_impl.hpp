@@ -19,6 +19,9 @@ inline constexpr double nothing_learnt = 0.9;
 /// Iterations of matching where several variants are tried: most of what there is to gain comes in the first.
 inline constexpr int iterations_of_a_try = 8;
 
+/// Iterations with all cases that the best of several variants goes on with: it has learnt the most of it.
+inline constexpr int iterations_to_finish = 4;
+
 /// The cases that a try learns from: a third of the equilibria, of every clamp set, where there are many.
 template <int Dim>
 RecordedCases<Dim, double> cases_of_a_try(const RecordedCases<Dim, double>& cases) {
@@ -159,7 +162,9 @@ bool finish_try(const NetworkVariant<Dim>& variant, const RecordedCases<Dim, dou
                 const CalibrateOptions& options, Calibration<Dim>& result) {
     auto& best = result.candidates[result.choice.candidate];
     const Stopwatch fitting;
-    auto made = CandidateMaker<Dim>(variant.given, cases, options).go_on(best);
+    auto how = options;
+    how.matching_iterations = std::min(how.matching_iterations, iterations_to_finish);
+    auto made = CandidateMaker<Dim>(variant.given, cases, how).go_on(best);
     made.all.erase(made.all.begin(), made.all.end() - 1);
     result.seconds[0].second += fitting.seconds();
     auto& found = made.all.front();
@@ -189,7 +194,8 @@ void try_variants(const std::vector<NetworkVariant<Dim>>& variants, const Record
         how.matching_iterations = std::min(how.matching_iterations, iterations_of_a_try);
     }
     for (std::size_t v = 0; v < variants.size(); ++v) {
-        unfinished = !add_candidates(variants[v], v, is_trying ? fewer : cases, cases, how, result, origins) || unfinished;
+        unfinished =
+            !add_candidates(variants[v], v, is_trying ? fewer : cases, cases, how, result, origins) || unfinished;
         result.choice = choose(result.candidates, options);
         if (unfinished || verdict_on(result.best().held_out, options.limits) == Verdict::good) {
             break;

@@ -174,7 +174,7 @@ private:
         if (m_options.damping == DampingRule::proportional) {
             how.parameters.damping_per_stiffness = m_stiffness_damping;
         }
-        while (true) {
+        for (bool is_refined = false;; is_refined = true) {
             std::optional<Candidate<Dim>> candidate = matched(prior, motions, how, stage);
             m_result.interrupted = stage.stopped();
             if (!candidate) {
@@ -186,9 +186,13 @@ private:
                 finer.steps_per_frame *= 2;
                 const double misfit = candidate->trajectory->misfit;
                 candidate->step_error = std::abs(window_misfit(candidate->network, motions, finer) / misfit - 1);
-                const bool is_last = m_options.steps_per_frame > 0 || finer.steps_per_frame > most_steps_per_frame;
-                if (candidate->step_error > step_error_limit && !is_last && !stage.stopped()) {
-                    how = finer;
+                const bool is_last = is_refined || m_options.steps_per_frame > 0 ||
+                                     how.steps_per_frame == most_steps_per_frame || stage.stopped();
+                if (candidate->step_error > step_error_limit && !is_last) { // it falls with the square of the steps
+                    const double more = std::sqrt(candidate->step_error / step_error_limit);
+                    how.steps_per_frame =
+                        static_cast<int>(std::min<double>(most_steps_per_frame, std::ceil(how.steps_per_frame * more)));
+                    m_start = candidate->trajectory->theta;
                     continue;
                 }
             }

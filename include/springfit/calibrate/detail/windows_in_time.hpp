@@ -78,8 +78,8 @@ struct FoundDamping {
 };
 
 /// The beta of D = beta K that is best in the windows of at most two motions, stiffness being matched without damping
-/// first; 0 where none gains a tenth. (Whole motions out of phase would call for damping.) With a `ratio` of critical it
-/// is that of the network's slowest motion.
+/// first; 0 where none gains a tenth. (Whole motions out of phase would call for damping.) With a `ratio` of critical
+/// it is that of the network's slowest motion.
 template <int Dim>
 FoundDamping find_damping(SpringNetwork<Dim, double> network, const std::vector<Motion<Dim, double>>& all,
                           TrajectoryOptions how, const std::optional<double>& ratio, const ProgressCallback& progress) {
@@ -113,8 +113,8 @@ FoundDamping find_damping(SpringNetwork<Dim, double> network, const std::vector<
     return found;
 }
 
-/// Throws InvalidArgument for frames that are more than two of the network's slowest periods apart: they do not show how
-/// it moves.
+/// Throws InvalidArgument for frames that are more than two of the network's slowest periods apart: they do not show
+/// how it moves.
 template <int Dim>
 void check_frames(const SpringNetwork<Dim, double>& network, const std::vector<Motion<Dim, double>>& motions) {
     for (const auto& motion : motions) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <springfit/cgal/detail/body_unit.hpp>
 #include <springfit/cgal/detail/clean_solid.hpp>
 #include <springfit/cgal/detail/sharp_edges.hpp>
 #include <springfit/cgal/detail/size_search.hpp>
 #include <springfit/cgal/detail/solid_mesher.hpp>
 #include <springfit/cgal/detail/solid_surface.hpp>
-#include <springfit/cgal/detail/body_unit.hpp>
 #include <springfit/cgal/tetrahedralize.hpp>
 
 namespace springfit::cgal {

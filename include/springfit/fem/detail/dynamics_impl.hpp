@@ -65,9 +65,7 @@ public:
     }
 
 private:
-    [[nodiscard]] Nodes displacement(const Values<S>& values) {
-        return positions(values) - predicted;
-    }
+    [[nodiscard]] Nodes displacement(const Values<S>& values) { return positions(values) - predicted; }
 
     Dynamics* m_dynamics;
 };
@@ -220,8 +218,7 @@ Status Dynamics<Dim, S>::attempt(State<Dim, S>& state, const Scenario<Dim, S>& s
     newton.gradient_tolerance = std::max(m_options.tolerance * scale, rounding);
     newton.linear_tolerance = S(1e-3);
     if (m_factor_step != dt) {
-        m_solver.set_factor(
-            detail::rest_factor(*m_body, m_free, problem.stiffness_part(), problem.mass_part()));
+        m_solver.set_factor(detail::rest_factor(*m_body, m_free, problem.stiffness_part(), problem.mass_part()));
         m_factor_step = dt;
     }
     m_solver.restart();

@@ -34,9 +34,9 @@ struct AccelerationOptions {
 ///     m_i a_i^MSM = f_i + sum_e [ k_e (L - l_e) n + c_e ((v_j - v_i) . n) n - q_e n ]
 ///
 /// f_i are the external forces and those of the network's cells, whose volume stiffness is taken as given. Nodes
-/// clamped in a motion do not count in it, nor do those that were not seen. Frames are read once and not kept: memory is about 4 (unknowns at a node)^2
-/// bytes per node and 32 frames of the motion. Cost per frame: sum over nodes of unknowns^2. Sums are in double
-/// whatever the Scalar of the data, and do not depend on the number of threads.
+/// clamped in a motion do not count in it, nor do those that were not seen. Frames are read once and not kept: memory
+/// is about 4 (unknowns at a node)^2 bytes per node and 32 frames of the motion. Cost per frame: sum over nodes of
+/// unknowns^2. Sums are in double whatever the Scalar of the data, and do not depend on the number of threads.
 template <int Dim, std::floating_point Scalar>
     requires SpatialDimension<Dim>
 class AccelerationObjective {

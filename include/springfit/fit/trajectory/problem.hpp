@@ -38,10 +38,11 @@ class TrajectoryPoint;
 ///
 ///     J = 1/2 sum_cases 1/s sum_frames |x(t; theta) - x_ref(t)|^2  +  lambda/2 |theta|^2 ,   lower <= theta <= upper,
 ///
-/// sums over the nodes that are not clamped and were seen. A motion of one frame is a static case: x is the network's equilibrium.
-/// Any other is cut into windows: from the recorded positions and velocities of its first frame the network is stepped
-/// on its own, under the recorded forces and clamps, over the horizon. s makes cases of one size: for a static case sum
-/// |x_ref - x_rest|^2, for the windows of a motion the lesser of that and of the distance from the straight motion x_0
+/// sums over the nodes that are not clamped and were seen. A motion of one frame is a static case: x is the network's
+/// equilibrium. Any other is cut into windows: from the recorded positions and velocities of its first frame the
+/// network is stepped on its own, under the recorded forces and clamps, over the horizon. s makes cases of one size:
+/// for a static case sum |x_ref - x_rest|^2, for the windows of a motion the lesser of that and of the distance from
+/// the straight motion x_0
 /// + t v_0 that no force would give. With a horizon of one short step J is therefore the acceleration objective, to the
 /// first order of the step.
 ///

@@ -119,8 +119,8 @@ private:
             substeps += time > before ? m_explicit.n_substeps(time - before) : 0;
             before = time;
         }
-        const bool is_short = substeps * static_cast<double>(m_network.n_springs() + m_network.n_cells()) <=
-                              m_options.most_explicit_work;
+        const bool is_short =
+            substeps * static_cast<double>(m_network.n_springs() + m_network.n_cells()) <= m_options.most_explicit_work;
         if (!is_short) {
             return move_implicitly(c, visit);
         }
