@@ -126,31 +126,35 @@ bool add_candidates(const NetworkVariant<Dim>& variant, std::size_t number, cons
     auto made = make_candidates(variant.given, learnt, options);
     result.warnings.insert(result.warnings.end(), made.warnings.begin(), made.warnings.end());
     result.seconds[0].second += fitting.seconds();
-    std::vector<Candidate<Dim>> others, matched;
+    std::vector<Candidate<Dim>> kept, matched;
+    std::vector<std::size_t> places; // of those matched
     for (std::size_t c = 0; c < made.all.size(); ++c) {
         auto& candidate = made.all[c];
         const bool is_given = c < variant.given.size();
         const auto& network = candidate.network;
         const bool is_again = number > 0 && is_given && network.n_cells() > 0 && // as without the cells
                               !(network.volume_stiffness.array() > 0).any();
+        if (is_again) {
+            continue;
+        }
+        origins.push_back({number, is_given ? std::optional(c) : std::nullopt});
         if (candidate.trajectory) {
-            matched.push_back(std::move(candidate));
-        } else if (!is_again) {
-            origins.push_back({number, is_given ? std::optional(c) : std::nullopt});
-            others.push_back(std::move(candidate));
+            places.push_back(kept.size());
+            matched.push_back(candidate);
         }
+        kept.push_back(std::move(candidate));
     }
-    origins.resize(origins.size() + matched.size(), {number, std::nullopt});
     const Stopwatch scoring;
-    const bool all_scored = score_try(matched.empty() ? others : matched, cases, options);
+    const bool all_scored = score_try(matched.empty() ? kept : matched, cases, options);
     result.seconds[1].second += scoring.seconds();
-    for (auto* candidates : {&others, &matched}) {
-        for (auto& candidate : *candidates) {
-            if (!variant.parts.empty()) {
-                candidate.name += " (" + variant.parts + ")";
-            }
-            result.candidates.push_back(std::move(candidate));
+    for (std::size_t m = 0; m < places.size(); ++m) {
+        kept[places[m]] = std::move(matched[m]);
+    }
+    for (auto& candidate : kept) {
+        if (!variant.parts.empty()) {
+            candidate.name += " (" + variant.parts + ")";
         }
+        result.candidates.push_back(std::move(candidate));
     }
     return all_scored && !made.interrupted;
 }

@@ -45,9 +45,10 @@ public:
 
     [[nodiscard]] RecordedCases<Dim, double> to_own(const RecordedCases<Dim, double>& cases) const {
         RecordedCases<Dim, double> own = cases;
+        const int bits = cases.period > 0 ? bits_of_simulations : bits_of_recordings;
         for (auto* set : {&own.training, &own.held_out}) {
             for (std::size_t c = 0; c < set->size(); ++c) {
-                set->motions[c] = to_own(std::move(set->motions[c]));
+                set->motions[c] = to_own(std::move(set->motions[c]), bits);
                 set->cases[c].scenario = to_own(std::move(set->cases[c].scenario));
             }
         }
@@ -62,12 +63,12 @@ private:
     [[nodiscard]] double force() const { return m_mass * acceleration(); }
     [[nodiscard]] double modulus() const { return force() / std::pow(m_length, Dim - 1); }
 
-    /// To 30 bits each.
+    /// To 36 bits each.
     static Values<double> rounded(const Values<double>& values) {
         return values.unaryExpr([](double value) {
             int exponent = 0;
             const double part = std::frexp(value, &exponent);
-            return std::ldexp(std::round(std::ldexp(part, 30)), exponent - 30);
+            return std::ldexp(std::round(std::ldexp(part, 36)), exponent - 36);
         });
     }
 
@@ -76,28 +77,31 @@ private:
     }
 
     [[nodiscard]] Points<Dim, double> rest_positions_in_own(const Points<Dim, double>& points) const {
-        return on_grid(points / m_length, std::ldexp(1., -30));
+        return on_grid(points / m_length, std::ldexp(1., -36));
     }
 
-    /// All to 20 bits of the largest: simulations end at less.
-    static void round(Frames& frames) {
+    static constexpr int bits_of_simulations = 20; ///< they end at less
+    static constexpr int bits_of_recordings = 34;  ///< which are the same but for the last of their 52 bits
+
+    /// All to so many bits of the largest.
+    static void round(Frames& frames, int bits) {
         double largest = 0;
         for (const auto& frame : frames) {
             largest = std::max(largest, frame.cwiseAbs().maxCoeff());
         }
-        const double grid = largest > 0 ? std::ldexp(1., std::ilogb(largest) - 20) : 0.;
+        const double grid = largest > 0 ? std::ldexp(1., std::ilogb(largest) - bits) : 0.;
         for (auto& frame : frames) {
             frame = on_grid(frame, grid);
         }
     }
 
-    [[nodiscard]] Motion<Dim, double> to_own(Motion<Dim, double> motion) const {
+    [[nodiscard]] Motion<Dim, double> to_own(Motion<Dim, double> motion, int bits) const {
         const auto rest = rest_positions_in_own(motion.rest_positions);
-        const auto scale = [](Frames& frames, double factor) {
+        const auto scale = [bits](Frames& frames, double factor) {
             for (auto& frame : frames) {
                 frame *= factor;
             }
-            round(frames);
+            round(frames, bits);
         };
         for (auto& positions : motion.positions) {
             positions -= motion.rest_positions;
