@@ -25,7 +25,8 @@ Values<double> read_masses(const std::string& path, Index n_nodes) {
         file.read("/mesh/mass", masses.data(), expected);
     } else {
         const io::Json model = io::read_json(path);
-        const io::Json mass = model.value(io::Json::json_pointer("/nodes/mass"), io::Json());
+        const io::Json::json_pointer place("/nodes/mass");
+        const io::Json mass = model.is_object() && model.contains(place) ? model.at(place) : io::Json();
         if (!mass.is_array() || static_cast<Index>(mass.size()) != n_nodes) {
             throw FileError(path, text("/nodes/mass: expected one mass for each of ", n_nodes, " nodes, found ",
                                        mass.is_array() ? text(mass.size()) : std::string(mass.type_name())));

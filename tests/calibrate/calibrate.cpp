@@ -7,15 +7,14 @@
 
 using namespace springfit;
 
+using test::even;
+
 namespace {
 
 /// A network that others are fitted to, with stiffness that varies from spring to spring.
 template <int Dim>
 SpringNetwork<Dim, double> hidden() {
-    auto network = test::small_network<Dim>();
-    for (Index e = 0; e < network.n_springs(); ++e) {
-        network.stiffness(e) *= 1 + 0.5 * std::sin(static_cast<double>(e));
-    }
+    auto network = test::hidden_network<Dim>();
     network.damping = stiffness_proportional_damping(network, 0.3 * stable_step(network));
     return network;
 }
@@ -30,13 +29,6 @@ RecordCasesOptions<Dim, double> few() {
     options.training_equilibria = 12;
     options.strain = 0.02;
     return options;
-}
-
-/// The network with the same stiffness everywhere.
-template <int Dim>
-SpringNetwork<Dim, double> even(SpringNetwork<Dim, double> network) {
-    network.stiffness.setConstant(network.stiffness.mean());
-    return network;
 }
 
 template <int Dim>

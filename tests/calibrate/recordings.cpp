@@ -8,23 +8,7 @@ using namespace springfit;
 
 namespace {
 
-/// A network to find again, with stiffness that varies from spring to spring.
-template <int Dim>
-SpringNetwork<Dim, double> hidden() {
-    auto network = test::small_network<Dim>();
-    for (Index e = 0; e < network.n_springs(); ++e) {
-        network.stiffness(e) *= 1 + 0.5 * std::sin(static_cast<double>(e));
-    }
-    return network;
-}
-
-template <int Dim>
-SpringNetwork<Dim, double> even(SpringNetwork<Dim, double> network) {
-    network.stiffness.setConstant(network.stiffness.mean());
-    return network;
-}
-
-/// Its motion under a weight that comes on at once, over two of its slowest periods.
+/// The motion of a network under a weight that comes on at once, over two of its slowest periods.
 template <int Dim>
 Motion<Dim, double> falling(const SpringNetwork<Dim, double>& network, double aside) {
     Scenario<Dim, double> scenario;
@@ -60,7 +44,7 @@ AnyMesh scaled(AnyMesh mesh, double factor) {
 TEST_CASE_TEMPLATE("noise is told from the model's error, and does not spoil the fit", T, test::Space<2, double>,
                    test::Space<3, double>) {
     constexpr int dim = T::dimension;
-    const auto truth = hidden<dim>();
+    const auto truth = test::hidden_network<dim>();
     const double level = 0.01;
     std::vector<Motion<dim, double>> recorded;
     for (const double aside : {1., 0.2, -0.6}) {
@@ -71,7 +55,7 @@ TEST_CASE_TEMPLATE("noise is told from the model's error, and does not spoil the
     REQUIRE(cases.held_out.size() == 1);
     CHECK(cases.held_out.motions.front().positions == recorded.back().positions); // as it was recorded
     CHECK(cases.training.motions.front().positions != recorded.front().positions);
-    const auto result = calibrate(even(truth), cases, matching());
+    const auto result = calibrate(test::even(truth), cases, matching());
     const auto& scores = result.best().held_out;
     CHECK(scores.noise > 0.85 * level);
     CHECK(scores.noise < 1.15 * level);
@@ -83,7 +67,7 @@ TEST_CASE_TEMPLATE("noise is told from the model's error, and does not spoil the
 
 TEST_CASE_TEMPLATE("what was not seen has no weight", T, test::Space<2, double>, test::Space<3, double>) {
     constexpr int dim = T::dimension;
-    const auto truth = hidden<dim>();
+    const auto truth = test::hidden_network<dim>();
     std::vector<Motion<dim, double>> recorded;
     for (const double aside : {1., 0.2, -0.6}) {
         auto motion = falling(truth, aside);
@@ -98,7 +82,7 @@ TEST_CASE_TEMPLATE("what was not seen has no weight", T, test::Space<2, double>,
         recorded.push_back(std::move(motion));
     }
     auto cases = split_motions<dim, double>(recorded);
-    const auto result = calibrate(even(truth), cases, matching());
+    const auto result = calibrate(test::even(truth), cases, matching());
     CHECK(result.verdict == Verdict::good);
     CHECK(result.best().held_out.error < 0.02);
     // Equilibria, too.
@@ -111,7 +95,7 @@ TEST_CASE_TEMPLATE("what was not seen has no weight", T, test::Space<2, double>,
         still.back().unobserved = {{static_cast<int>(motion.n_nodes()) - 1}};
         still.back().positions.front().col(motion.n_nodes() - 1).array() += 0.3;
     }
-    const auto balanced = calibrate(even(truth), split_motions<dim, double>(still), matching());
+    const auto balanced = calibrate(test::even(truth), split_motions<dim, double>(still), matching());
     CHECK(balanced.best().held_out.error < 0.02);
 }
 
@@ -147,14 +131,14 @@ TEST_CASE_TEMPLATE("the same network whatever the units", T, test::Space<2, doub
 }
 
 TEST_CASE("the damping of a recording may be told, and the time step's error is small beside the misfit") {
-    const auto truth = hidden<2>();
+    const auto truth = test::hidden_network<2>();
     const std::vector<Motion<2, double>> recorded{falling(truth, 1), falling(truth, 0.2)};
     auto options = matching();
     options.damping_ratio = 0.07;
-    const auto result = calibrate(even(truth), split_motions<2, double>(recorded), options);
+    const auto result = calibrate(test::even(truth), split_motions<2, double>(recorded), options);
     CHECK(result.damping_ratio > 0.04); // of the given network's period
     CHECK(result.damping_ratio < 0.1);
     CHECK(result.best().steps_per_frame >= 1);
     options.damping_ratio = 1;
-    CHECK_THROWS_AS((void)calibrate(even(truth), split_motions<2, double>(recorded), options), InvalidArgument);
+    CHECK_THROWS_AS((void)calibrate(test::even(truth), split_motions<2, double>(recorded), options), InvalidArgument);
 }

@@ -40,6 +40,23 @@ template <int Dim>
     return network;
 }
 
+/// That network with stiffness that varies from spring to spring, to find again.
+template <int Dim>
+[[nodiscard]] SpringNetwork<Dim, double> hidden_network() {
+    auto network = small_network<Dim>();
+    for (Index e = 0; e < network.n_springs(); ++e) {
+        network.stiffness(e) *= 1 + 0.5 * std::sin(static_cast<double>(e));
+    }
+    return network;
+}
+
+/// The network with the same stiffness everywhere.
+template <int Dim>
+[[nodiscard]] SpringNetwork<Dim, double> even(SpringNetwork<Dim, double> network) {
+    network.stiffness.setConstant(network.stiffness.mean());
+    return network;
+}
+
 /// A box three times as long as wide, its inner nodes moved, not clamped.
 template <int Dim, class Scalar>
 [[nodiscard]] Specimen<Dim, Scalar> box_body() {

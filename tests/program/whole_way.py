@@ -208,10 +208,22 @@ with h5py.File(folder / "strip.h5", "w") as file:
     file["/mesh/points"], file["/mesh/cells"], file["/time"] = points, triangles, dt * numpy.arange(frames)
     for name, values in record.items():
         file[f"/reference/{name}"] = numpy.array(values)
-for method, name in (("exact", "exact"), ("dominant-term", "dominant_term")):
-    out = folder / method
-    fit(folder / "strip.h5", "--young", 1e3, "--poisson", 0.3, "--density", 10, "--damping", "fitted", "--method",
-        method, "--out", out)
+# The same in millimetres and milliseconds, with masses of its own and a marker that is lost for a while.
+with h5py.File(folder / "lost_strip.h5", "w") as file:
+    file["/mesh/points"], file["/mesh/cells"], file["/mesh/mass"] = 1e3 * points, triangles, mass
+    file["/time"] = 1e3 * dt * numpy.arange(frames)
+    for name, scale in (("displacement", 1e3), ("velocity", 1), ("acceleration", 1e-3), ("force", 1)):
+        values = scale * numpy.array(record[name])
+        if name == "displacement":
+            values[10:14, -1] = numpy.nan
+        file[f"/reference/{name}"] = values
+OTHER_UNITS = ["--unit", "mm", "--time-unit", "ms", "--mass-from", folder / "lost_strip.h5"]
+for method, name, recording, density, units in (
+        ("exact", "exact", "strip.h5", 10, []), ("dominant-term", "dominant_term", "strip.h5", 10, []),
+        ("exact", "exact", "lost_*.h5", 99, OTHER_UNITS)):
+    out = folder / (method + recording[:4])
+    fit(folder / recording, "--young", 1e3, "--poisson", 0.3, "--density", density, "--damping", "fitted", "--method",
+        method, *units, "--out", out)
     model = json.load(open(out / "model.json"))
     report = json.load(open(out / "report.json"))
     check_model(model, len(points), len(edges), 2)
@@ -223,6 +235,9 @@ for method, name in (("exact", "exact"), ("dominant-term", "dominant_term")):
     assert numpy.max(numpy.abs(k[:, 0] / stiffness[free] - 1)) < 1e-6, method
     assert numpy.max(numpy.abs(k[:, 1] - damping[free])) < 1e-6 * numpy.max(damping), method
     assert report["method"] == name and report["held_out"]["error"] < 1e-2, report["held_out"]
+    assert (out / "report.json").read_text().startswith('{\n  "verdict": "good"'), method
+    lost = [w for w in report["detail"]["warnings"] if w["code"] == "unobserved"]
+    assert [w["values"]["positions"] for w in lost] == ([4] if units else []), lost
 
 # Ctrl-C: the best result so far, complete, or nothing at all.
 out = folder / "interrupted"

@@ -140,6 +140,17 @@ refused("missing column", ["fit", folder / "no-displacement.h5", *MATERIAL], ["/
 displacement[3, 2, 1] = numpy.inf
 bodies.write_motion(folder / "inf.h5", points, triangles, times, displacement)
 refused("infinity in a motion", ["fit", folder / "inf.h5", *MATERIAL], ["inf.h5", "/reference/displacement"])
+refused("pattern that no file matches", ["fit", folder / "none_*.h5", *MATERIAL], ["none_*.h5", "no such file"])
+refused("masses of the FEM reference", ["fit", cube, *MATERIAL, "--mass-from", folder / "broken.json"], ["--mass-from"])
+(folder / "mass.json").write_text('{"nodes": {"mass": [1, 2]}}')
+refused("masses of other nodes", ["fit", folder / "strip.h5", *MATERIAL, "--mass-from", folder / "mass.json"],
+        ["mass.json", "/nodes/mass", "found 2"])
+(folder / "mass.json").write_text("[1, 2]")
+refused("no masses", ["fit", folder / "strip.h5", *MATERIAL, "--mass-from", folder / "mass.json"],
+        ["mass.json", "/nodes/mass"])
+refused("masses that are not there", ["fit", folder / "strip.h5", *MATERIAL, "--mass-from", folder / "other.h5"],
+        ["other.h5", "/mesh/mass"])
+refused("mesh after a motion", ["fit", folder / "strip.h5", cube, *MATERIAL], ["INPUT", "recorded motions"])
 refused("meshing option for a motion", ["fit", folder / "strip.h5", *MATERIAL, "--nodes", "100"], ["--nodes"])
 refused("finer reference for a motion", ["fit", folder / "strip.h5", *MATERIAL, "--reference-nodes", "2000"],
         ["--reference-nodes", "recorded motion"])

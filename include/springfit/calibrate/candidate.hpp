@@ -51,8 +51,10 @@ template <int Dim>
 struct Candidate {
     std::string name;
     SpringNetwork<Dim, double> network;
-    std::optional<AccelerationReport> acceleration{}; ///< of an acceleration fit
-    std::optional<TrajectoryReport> trajectory{};     ///< of matching of motion
+    /// Of an acceleration fit; `calibrate` makes it in units in which the first network has size, mass and mean
+    /// stiffness 1.
+    std::optional<AccelerationReport> acceleration{};
+    std::optional<TrajectoryReport> trajectory{}; ///< of matching of motion
     Values<double>
         data_share{}; ///< of each spring, of matching of motion: above 1/2 the data set its stiffness, else the prior
     Index n_clamped = 0;

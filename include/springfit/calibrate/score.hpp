@@ -10,9 +10,10 @@ namespace springfit {
 /// Fills in the errors of every candidate that has none yet on the held-out cases, and then on a sample of the
 /// training's: matched motion first, other fits, then the given networks.
 ///
-/// A case that a candidate fails in counts as 1, and those after it are not tried: they count as 1, too. Where no
-/// candidate comes out good, the three that went best are tried again in every case, with all that helps
-/// (`motion_error`). Returns false where the callback ended it; what was not reached stays infinite.
+/// A case that a candidate fails in counts as 1, and those after it are not tried: they count as 1, too. Of those that
+/// failed, up to three are tried again in every case, with all that helps (`motion_error`): those that went better than
+/// the best where they came through, or best where no candidate is good. Returns false where the callback ended it;
+/// what was not reached stays infinite.
 template <int Dim>
 [[nodiscard]] bool score(std::vector<Candidate<Dim>>& candidates, const RecordedCases<Dim, double>& cases,
                          const CalibrateOptions& options = {});

@@ -239,11 +239,6 @@ void restore(Candidate<Dim>& candidate, const Origin& origin, const std::vector<
         candidate.network.volume_stiffness = like.volume_stiffness;
     }
     candidate.stiffness_damping *= units.time();
-    if (candidate.acceleration) {
-        const double square = units.acceleration() * units.acceleration();
-        candidate.acceleration->objective_start *= square;
-        candidate.acceleration->objective *= square;
-    }
 }
 
 } // namespace detail

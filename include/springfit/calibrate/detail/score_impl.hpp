@@ -34,7 +34,7 @@ double error_of_noise(const CaseSet<Dim, double>& set) {
 
 namespace detail {
 
-/// Candidates that are tried again in the cases that they failed in, where none is good.
+/// Candidates that are tried again in every case, where they failed in one but may yet be the best.
 inline constexpr std::size_t n_tried_again = 3;
 
 /// Root mean square of the errors of the cases that a candidate came through; infinite where there are none.
@@ -77,7 +77,8 @@ public:
         }
     }
 
-    /// Where none is good, those that went best so far in every case, with all that helps.
+    /// In every case, with all that helps: those that failed, but went better than the best where they came through, or
+    /// where none is good. A failure for want of effort does not cost a network its place.
     void try_again() {
         auto order = m_order;
         std::erase_if(order, [](const auto* candidate) {
@@ -89,7 +90,9 @@ public:
         });
         order.resize(std::min(order.size(), n_tried_again));
         for (auto* candidate : order) {
-            if (!(m_best < m_options.limits.fair) && !m_stage.stopped()) {
+            const bool may_be_best =
+                !(m_best < m_options.limits.fair) || error_where_converged(candidate->held_out) < m_best;
+            if (may_be_best && !m_stage.stopped()) {
                 const auto found = scores_of(candidate->network, m_cases.held_out, every_held_out(), false);
                 candidate->held_out = m_stage.stopped() ? candidate->held_out : found;
                 m_best = std::min(m_best, candidate->held_out.error);

@@ -17,7 +17,6 @@ public:
           m_mass(network.mass.sum()), m_time(std::sqrt(m_mass / network.stiffness.mean())) {}
 
     [[nodiscard]] double time() const { return m_time; }
-    [[nodiscard]] double acceleration() const { return m_length / (m_time * m_time); }
 
     [[nodiscard]] SpringNetwork<Dim, double> to_own(SpringNetwork<Dim, double> network) const {
         network.rest_positions = rest_positions_in_own(network.rest_positions);
@@ -60,6 +59,7 @@ public:
 private:
     using Frames = std::vector<Points<Dim, double>>;
 
+    [[nodiscard]] double acceleration() const { return m_length / (m_time * m_time); }
     [[nodiscard]] double force() const { return m_mass * acceleration(); }
     [[nodiscard]] double modulus() const { return force() / std::pow(m_length, Dim - 1); }
 
