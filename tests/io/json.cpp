@@ -373,8 +373,8 @@ TEST_CASE("a report holds the contract's fields, and null for what is not finite
     report.springs = 34;
     report.seconds = 1.5;
     report.stage_seconds = {{"mesh", 0.5}, {"fit", 1.0}};
-    report.held_out = {0.25, {{"van_gelder", 0.25}, {"exact", std::numeric_limits<double>::infinity()}}};
-    report.training = {0.125, {{"van_gelder", 0.125}, {"exact", 3.0}}};
+    report.held_out = {0.25, 0, {{"van_gelder", 0.25}, {"exact", std::numeric_limits<double>::infinity()}}};
+    report.training = {0.125, 0, {{"van_gelder", 0.125}, {"exact", 3.0}}};
     report.warnings = {"softer than the closed form"};
     report.detail = {{"seed", 7}, {"fit", {{"kkt", Json::array({1e-9, std::nan("")})}}}};
 
