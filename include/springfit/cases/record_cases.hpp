@@ -16,6 +16,7 @@ struct RecordCasesOptions {
     int training_motions = 6; ///< >= 1
     int held_out_motions = 3; ///< >= 1: a load of a trained kind, then kinds that training never shows
     int frames = 32;          ///< of each, >= 4
+    int steps_per_frame = 2;  ///< of the reference, >= 1: at one its own step is .04 of a motion, at two .01
     /// Largest displacement aimed at, as a part of the body's size, in (0, 1); none: 0.05 (of a linear reference
     /// 0.005), or less where `strain` is reached before.
     std::optional<Scalar> deformation{};
@@ -47,10 +48,11 @@ struct RecordCasesOptions {
 /// Load cases of a specimen, recorded: motions in time and equilibria, to learn from and to judge by.
 ///
 /// Loads are scaled by the linear response to them: those of equilibria to one strain of the specimen's edges, those of
-/// motions to one largest displacement, or to the same strain where it comes first, as in thin or slender parts.
+/// motions to one largest displacement, or to the same strain, overshoot and all, where it comes first, as in thin or
+/// slender parts.
 /// (`record_motions` and `record_equilibria` do it for cases of your own.) Motions last 1.25 periods of the slowest
-/// response u to a load f, omega^2 = f . u / (u . M u) (Rayleigh's quotient); the ramp takes 0.3 of them, the release
-/// comes at 0.6. Cases that the reference does not come through are left out, with a warning.
+/// response u to a load f, omega^2 = f . u / (u . M u) (Rayleigh's quotient); the ramp takes 0.3 of that time, the release
+/// comes at 0.6 of it. Cases that the reference does not come through are left out, with a warning.
 ///
 /// Throws InvalidArgument for an option out of range, for a specimen of other nodes than the reference, for clamps that
 /// do not hold the body ("clamps"), and where no case to learn from or none to judge by came about ("reference"). Where

@@ -20,6 +20,11 @@ struct Specimen {
     NodePairs edges{}; ///< pairs of nodes whose strain counts `[2 x n]`; needed for equilibria alone
 
     [[nodiscard]] Index n_nodes() const { return rest_positions.cols(); }
+
+    /// Diagonal of its bounding box, m.
+    [[nodiscard]] Scalar size() const {
+        return (rest_positions.rowwise().maxCoeff() - rest_positions.rowwise().minCoeff()).norm();
+    }
 };
 
 /// Throws InvalidArgument unless there is a finite position and a positive mass for every node, and surface and clamps

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <springfit/cases/load_cases.hpp>
@@ -91,21 +92,25 @@ template <int Dim, std::floating_point Scalar>
 }
 
 /// Scales the loads of scenarios such that the linear response strains 95 % of the pairs of nodes by no more than
-/// `strain` and none by more than four times that, which local loads reach first; returns the factors. Where a case has
-/// no response or one without strain, its loads stay as they are and its factor is 0.
+/// `strain` and none by more than four times that, which local loads reach first, and displaces no node by more than
+/// `displacement`, m, which slender bodies reach first; returns the factors. Where a case has no response or one without
+/// strain, its loads stay as they are and its factor is 0.
 ///
 ///     scale_to_strain(cases, edges(mesh), mesh.nodes, 0.15,
 ///                     [&](const auto& scenarios) { return linear_responses(model, scenarios); });
 ///
 /// `respond(scenarios)` gives a displacement `[Dim x n_nodes]` per scenario, empty where there is none. The strain that
 /// comes about is another where the body answers nonlinearly, by some tens of percent at 0.15. Clamps that move add to
-/// the response but are not scaled: record them as they are. Throws InvalidArgument for arrays that do not fit.
+/// the response but are not scaled: record them as they are. Throws InvalidArgument for arrays that do not fit and for
+/// limits out of range.
 template <int Dim, std::floating_point Scalar, class Respond>
     requires std::convertible_to<std::invoke_result_t<const Respond&, const std::vector<Scenario<Dim, Scalar>>&>,
                                  std::vector<Points<Dim, Scalar>>>
 std::vector<Scalar> scale_to_strain(std::vector<Scenario<Dim, Scalar>>& scenarios, const NodePairs& pairs,
                                     const Points<Dim, Scalar>& rest, std::type_identity_t<Scalar> strain,
-                                    const Respond& respond) {
+                                    const Respond& respond,
+                                    std::type_identity_t<Scalar> displacement = std::numeric_limits<Scalar>::infinity()) {
+    require(displacement > 0, "displacement", "a length above 0", displacement);
     require(strain > 0 && strain < 1, "strain", "a value in (0, 1)", strain);
     const std::vector<Points<Dim, Scalar>> responses = respond(std::as_const(scenarios));
     require(responses.size() == scenarios.size(), "respond", text(scenarios.size(), " displacements, one per scenario"),
@@ -117,7 +122,7 @@ std::vector<Scalar> scale_to_strain(std::vector<Scenario<Dim, Scalar>>& scenario
         }
         const EdgeStrain<Scalar> response = linear_edge_strain(pairs, rest, responses[c]);
         const Scalar found = detail::scaled_strain(response);
-        const Scalar factor = strain / found;
+        const Scalar factor = std::min(strain / found, displacement / responses[c].colwise().norm().maxCoeff());
         if (found > 0 && std::isfinite(factor)) {
             scale_loads(scenarios[c], factor);
             factors[c] = factor;

@@ -14,6 +14,7 @@ void validate(const RecordCasesOptions<Dim, Scalar>& options) {
     require(options.training_motions >= 1, "training_motions", "at least one", options.training_motions);
     require(options.held_out_motions >= 1, "held_out_motions", "at least one", options.held_out_motions);
     require(options.frames >= 4, "frames", "at least 4", options.frames);
+    require(options.steps_per_frame >= 1, "steps_per_frame", "at least one", options.steps_per_frame);
     const auto is_part = [](const std::optional<Scalar>& value) { return !value || (*value > 0 && *value < 1); };
     require(is_part(options.deformation), "deformation", "a part of the body's size in (0, 1)",
             options.deformation.value_or(0));
@@ -78,12 +79,13 @@ private:
         }
     }
 
-    /// The largest factor that a load may have by the strain of its linear response u.
+    /// The largest factor that a load may have by the strain of its linear response u, which the motion overshoots.
     [[nodiscard]] Scalar factor_of_strain(const Points<Dim, Scalar>& u) const {
         if (m_options.deformation || m_specimen.edges.cols() == 0) {
             return std::numeric_limits<Scalar>::infinity();
         }
-        return m_result.strain / scaled_strain(linear_edge_strain(m_specimen.edges, m_specimen.rest_positions, u));
+        return m_result.strain / overshoot /
+               scaled_strain(linear_edge_strain(m_specimen.edges, m_specimen.rest_positions, u));
     }
 
     [[nodiscard]] std::vector<Points<Dim, Scalar>> responses(const Scenarios& scenarios) const {
@@ -99,7 +101,6 @@ private:
     /// Scales the loads of motions; returns the lowest frequency, rad/s.
     [[nodiscard]] Scalar scale_to_deformation(Scenarios& scenarios) const {
         const auto& rest = m_specimen.rest_positions;
-        const Scalar size = (rest.rowwise().maxCoeff() - rest.rowwise().minCoeff()).norm();
         const auto displacements = responses(scenarios);
         require(displacements.size() == scenarios.size(), "responses",
                 text(scenarios.size(), " displacements, one per scenario"), displacements.size());
@@ -112,7 +113,7 @@ private:
             const auto forces = external_forces<Dim, Scalar>(scenarios[c], m_specimen.masses, 0);
             const Scalar work = forces.cwiseProduct(u).sum();
             const Scalar inertia = (u.colwise().squaredNorm() * m_specimen.masses)(0);
-            const Scalar factor = m_result.deformation * size / u.colwise().norm().maxCoeff();
+            const Scalar factor = m_result.deformation * m_specimen.size() / u.colwise().norm().maxCoeff();
             scale_loads(scenarios[c], std::min(factor, factor_of_strain(u)));
             slowest = std::min(slowest, std::sqrt(work / inertia));
         }
@@ -139,13 +140,14 @@ private:
         m_result.stiffness_damping = !m_reference.takes_damping() ? m_reference.stiffness_damping()
                                      : m_options.damping_ratio    ? 2 * *m_options.damping_ratio / slowest
                                                                   : m_options.stiffness_damping;
-        const Scalar duration = Scalar(1.25) * m_result.period;
+        const Scalar duration = n_periods * m_result.period;
         RecordOptions<Scalar> how;
         how.frames = m_options.frames;
+        how.steps_per_frame = m_options.steps_per_frame;
         how.dt = duration / static_cast<Scalar>(how.frames - 1);
         how.progress = m_options.progress;
         for (std::size_t c = 0; c < cases.size(); ++c) {
-            set_amplitude(scenarios[c], ramp_and_release(Scalar(0.3) * duration, Scalar(0.6) * duration));
+            set_amplitude(scenarios[c], ramp_and_release(ramp * duration, Scalar(0.6) * duration));
             cases[c].scenario = std::move(scenarios[c]);
         }
         m_result.add(springfit::record_motions(m_reference, std::move(cases), m_result.stiffness_damping, how,
@@ -197,6 +199,15 @@ private:
                                                        .progress = progress}));
         }
     }
+
+    static constexpr Scalar n_periods = Scalar(1.25); ///< that a motion lasts, of the slowest response
+    static constexpr Scalar ramp = Scalar(0.3);       ///< part of the motion in which loads grow
+    /// An oscillator whose load grows over the time t of its period T as in `ramp_and_release`, then stays, swings out to
+    /// 1 + 3 (sin a - a cos a) / a^3, a = pi t / T, times its response at rest: Fourier's transform of the load's growth.
+    inline static const Scalar overshoot = [] {
+        const Scalar a = std::numbers::pi_v<Scalar> * ramp * n_periods;
+        return 1 + 3 * (std::sin(a) - a * std::cos(a)) / (a * a * a);
+    }();
 
     const CaseRecorder<Dim, Scalar>& m_reference;
     Specimen<Dim, Scalar> m_specimen;

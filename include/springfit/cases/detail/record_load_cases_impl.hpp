@@ -16,11 +16,12 @@ record_equilibria(const CaseRecorder<Dim, Scalar>& reference, const Specimen<Dim
         scenarios.push_back(load_case.scenario);
     }
     const StaticRecordOptions<Scalar> how{.execution = options.execution, .progress = options.progress};
-    (void)scale_to_strain<Dim, Scalar>(
-        scenarios, specimen.edges, specimen.rest_positions, options.strain, [&](const auto& all) {
-            return options.responses ? options.responses(all)
-                                     : reference.linear_responses(all, {.execution = options.execution});
-        });
+    const auto respond = [&](const auto& all) {
+        return options.responses ? options.responses(all)
+                                 : reference.linear_responses(all, {.execution = options.execution});
+    };
+    (void)scale_to_strain<Dim, Scalar>(scenarios, specimen.edges, specimen.rest_positions, options.strain, respond,
+                                       options.deformation * specimen.size());
     auto recordings = reference.record_statics(scenarios, how);
     RecordedCases<Dim, Scalar> recorded;
     for (std::size_t c = 0; c < cases.size(); ++c) {
