@@ -47,19 +47,22 @@ struct TensileMisfit {
     Eigen::Vector3d linear = Eigen::Vector3d::Zero();
     double target = 0;
 
-    void add(const Eigen::Matrix<double, 2, 3>& row, double stress) {
+    template <class Row>
+    void add(const Eigen::MatrixBase<Row>& row, double stress) {
         hessian += row.row(0).transpose() * row.row(0) + 2 * row.row(1).transpose() * row.row(1);
         linear += stress * row.row(0).transpose();
         target += stress * stress;
     }
 
     /// As a part of the test's stress.
-    [[nodiscard]] double relative(const Values<double>& k) const {
+    template <class Stiffness>
+    [[nodiscard]] double relative(const Eigen::MatrixBase<Stiffness>& k) const {
         return std::sqrt(maximum(0., target + k.dot(hessian * k - 2 * linear)) / target);
     }
 };
 
-[[nodiscard]] inline TensileMisfit tensile_misfit(const IsotropicSolid& solid, const TensileCurves& curves) {
+template <std::same_as<IsotropicSolid> Solid>
+[[nodiscard]] TensileMisfit tensile_misfit(const Solid& solid, const TensileCurves& curves) {
     TensileMisfit misfit;
     if (curves.largest_strain == 0) {
         misfit.add(cube_stress_rate(solid.poisson), 1);
@@ -77,7 +80,8 @@ struct TensileMisfit {
 }
 
 /// The k >= 0 of least misfit and, among equals, of the least norm; 0 for diagonals that there are none of.
-[[nodiscard]] inline Values<double> least_misfit(const TensileMisfit& misfit, bool faces, bool bodies) {
+template <std::same_as<TensileMisfit> Misfit>
+[[nodiscard]] Values<double> least_misfit(const Misfit& misfit, bool faces, bool bodies) {
     const double infinity = std::numeric_limits<double>::infinity();
     const Values<double> lower = Values<double>::Zero(3);
     Values<double> upper = lower;

@@ -13,8 +13,9 @@ namespace detail {
 
 /// Weights w with sum_j w_j f(times[first + j]) = the derivative of that order at times[at], exact for polynomials of
 /// degree below `count`: sum_j w_j (t_j - t)^p = order! where p = order, else 0.
-[[nodiscard]] inline Values<double> difference_weights(const std::vector<double>& times, std::size_t first,
-                                                       std::size_t count, std::size_t at, int order) {
+template <std::same_as<double> Time>
+[[nodiscard]] Values<double> difference_weights(const std::vector<Time>& times, std::size_t first, std::size_t count,
+                                                std::size_t at, int order) {
     const double scale = times[first + count - 1] - times[first];
     const auto n = static_cast<Index>(count);
     DenseMatrix<double> powers(n, n);

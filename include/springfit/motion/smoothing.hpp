@@ -25,8 +25,9 @@ DenseMatrix<double> displacements(const Motion<Dim, Scalar>& motion, const FreeN
 }
 
 /// D of the differences of some order between neighbours, [n - order x n].
-inline DenseMatrix<double> difference_matrix(Index n, int order) {
-    DenseMatrix<double> d = DenseMatrix<double>::Identity(n, n);
+template <std::same_as<double> Real>
+DenseMatrix<Real> difference_matrix(Index n, int order) {
+    DenseMatrix<Real> d = DenseMatrix<Real>::Identity(n, n);
     for (int o = 0; o < order; ++o) {
         d = (d.bottomRows(d.rows() - 1) - d.topRows(d.rows() - 1)).eval();
     }
@@ -35,11 +36,12 @@ inline DenseMatrix<double> difference_matrix(Index n, int order) {
 
 /// The noise by sixth differences in time, which leave little of a motion that the frames resolve: the median of their
 /// size beside that of Gaussian numbers, over the root of C(12, 6).
-inline double noise_in_time(const DenseMatrix<double>& u) {
+template <std::same_as<double> Real>
+Real noise_in_time(const DenseMatrix<Real>& u) {
     constexpr int order = 6;
     constexpr double variance = 924;             // C(12, 6)
     constexpr double median_of_size = 0.6744898; // of Gaussian numbers, whose standard deviation is 1
-    const DenseMatrix<double> differences = u * difference_matrix(u.cols(), order).transpose();
+    const DenseMatrix<double> differences = u * difference_matrix<double>(u.cols(), order).transpose();
     std::vector<double> sizes(static_cast<std::size_t>(differences.size()));
     std::transform(differences.data(), differences.data() + differences.size(), sizes.begin(),
                    [](double d) { return std::abs(d); });
@@ -50,7 +52,8 @@ inline double noise_in_time(const DenseMatrix<double>& u) {
 
 /// The noise by the singular values of the displacements: those of a smooth motion fall to nothing, those of m x n
 /// independent numbers lie in sigma (sqrt m -+ sqrt n). The lower quartile is that of a semicircle.
-inline double noise_in_space(const DenseMatrix<double>& u) {
+template <std::same_as<double> Real>
+Real noise_in_space(const DenseMatrix<Real>& u) {
     const Index n = std::min(u.rows(), u.cols());
     const Index m = std::max(u.rows(), u.cols());
     const DenseMatrix<double> gram = u.cols() <= u.rows() ? DenseMatrix<double>(u.transpose() * u) : u * u.transpose();
@@ -64,23 +67,24 @@ inline double noise_in_space(const DenseMatrix<double>& u) {
 
 /// Whittaker's smoother of evenly spaced numbers y: the z that minimises |y - z|^2 + lambda |D z|^2, D the fourth
 /// differences, with the lambda that makes the unbiased estimate of the risk least for noise of a known size (Mallows).
+template <std::same_as<double> Real>
 class Smoother {
 public:
     explicit Smoother(Index n) {
-        const DenseMatrix<double> d = difference_matrix(n, 4);
-        const Eigen::SelfAdjointEigenSolver<DenseMatrix<double>> roughness(d.transpose() * d);
+        const DenseMatrix<Real> d = difference_matrix<Real>(n, 4);
+        const Eigen::SelfAdjointEigenSolver<DenseMatrix<Real>> roughness(d.transpose() * d);
         m_vectors = roughness.eigenvectors();
         m_roughness = roughness.eigenvalues().cwiseMax(0.);
     }
 
-    [[nodiscard]] Values<double> operator()(const Values<double>& y, double noise) const {
-        const Values<double> parts = m_vectors.transpose() * y;
-        Values<double> best = Values<double>::Ones(y.size());
-        double least = std::numeric_limits<double>::infinity();
-        for (double lambda = 1e-4; lambda < 1e8; lambda *= 1.5) {
-            const Values<double> kept = (1 + lambda * m_roughness.array()).inverse();
-            const double left = ((1 - kept.array()) * parts.array()).matrix().squaredNorm();
-            const double risk = left + 2 * noise * noise * kept.sum();
+    [[nodiscard]] Values<Real> operator()(const Values<Real>& y, Real noise) const {
+        const Values<Real> parts = m_vectors.transpose() * y;
+        Values<Real> best = Values<Real>::Ones(y.size());
+        Real least = std::numeric_limits<Real>::infinity();
+        for (Real lambda = 1e-4; lambda < 1e8; lambda *= 1.5) {
+            const Values<Real> kept = (1 + lambda * m_roughness.array()).inverse();
+            const Real left = ((1 - kept.array()) * parts.array()).matrix().squaredNorm();
+            const Real risk = left + 2 * noise * noise * kept.sum();
             if (risk < least) {
                 least = risk;
                 best = kept;
@@ -90,8 +94,8 @@ public:
     }
 
 private:
-    DenseMatrix<double> m_vectors;
-    Values<double> m_roughness;
+    DenseMatrix<Real> m_vectors;
+    Values<Real> m_roughness;
 };
 
 } // namespace detail
@@ -132,7 +136,7 @@ template <int Dim, std::floating_point Scalar>
     const double sigma = static_cast<double>(noise);
     const double edge = sigma * (std::sqrt(static_cast<double>(u.rows())) + std::sqrt(static_cast<double>(u.cols())));
     const Eigen::SelfAdjointEigenSolver<DenseMatrix<double>> principal(DenseMatrix<double>(u.transpose() * u));
-    const detail::Smoother smooth(u.cols());
+    const detail::Smoother<double> smooth(u.cols());
     DenseMatrix<double> estimate = DenseMatrix<double>::Zero(u.rows(), u.cols());
     for (Index k = u.cols() - 1; k >= 0 && principal.eigenvalues()(k) > edge * edge; --k) {
         const double size = std::sqrt(principal.eigenvalues()(k));

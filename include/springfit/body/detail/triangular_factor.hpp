@@ -12,7 +12,8 @@ namespace springfit::detail {
 class TriangularFactor {
 public:
     /// False where the matrix, given by the entries of its lower triangle, is not positive definite.
-    [[nodiscard]] bool factorise(int size, const std::vector<Eigen::Triplet<float>>& entries) {
+    template <std::same_as<float> Entry>
+    [[nodiscard]] bool factorise(int size, const std::vector<Eigen::Triplet<Entry>>& entries) {
         m_rows.clear();
         m_values.clear();
         SparseMatrix<double> matrix(size, size);

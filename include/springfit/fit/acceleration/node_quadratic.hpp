@@ -176,22 +176,23 @@ public:
     }
 
     /// Lower triangle of H `[n_unknowns x n_unknowns]`; an entry for each two unknowns that share a node.
-    [[nodiscard]] SparseMatrix<double> hessian() const {
-        std::vector<Eigen::Triplet<double>> entries;
+    template <std::same_as<double> Real = double>
+    [[nodiscard]] SparseMatrix<Real> hessian() const {
+        std::vector<Eigen::Triplet<Real>> entries;
         entries.reserve(m_hessian.size() + static_cast<std::size_t>(n_unknowns()));
         for (Index u = 0; u < n_unknowns(); ++u) {
             entries.emplace_back(static_cast<int>(u), static_cast<int>(u), m_ridge(u));
         }
         for (Index i = 0; i < n_terms(); ++i) {
             const Term t = term(i);
-            const double* value = t.hessian;
+            const Real* value = t.hessian;
             for (std::size_t q = 0; q < t.columns.size(); ++q) {
                 for (std::size_t p = q; p < t.columns.size(); ++p) {
                     entries.emplace_back(t.columns[p], t.columns[q], *value++);
                 }
             }
         }
-        SparseMatrix<double> matrix(n_unknowns(), n_unknowns());
+        SparseMatrix<Real> matrix(n_unknowns(), n_unknowns());
         matrix.setFromTriplets(entries.begin(), entries.end());
         return matrix;
     }
