@@ -51,8 +51,8 @@ struct RecordCasesOptions {
 /// motions to one largest displacement, or to the same strain, overshoot and all, where it comes first, as in thin or
 /// slender parts.
 /// (`record_motions` and `record_equilibria` do it for cases of your own.) Motions last 1.25 periods of the slowest
-/// response u to a load f, omega^2 = f . u / (u . M u) (Rayleigh's quotient); the ramp takes 0.3 of that time, the release
-/// comes at 0.6 of it. Cases that the reference does not come through are left out, with a warning.
+/// response u to a load f, omega^2 = f . u / (u . M u) (Rayleigh's quotient); the ramp takes 0.3 of that time, the
+/// release comes at 0.6 of it. Cases that the reference does not come through are left out, with a warning.
 ///
 /// Throws InvalidArgument for an option out of range, for a specimen of other nodes than the reference, for clamps that
 /// do not hold the body ("clamps"), and where no case to learn from or none to judge by came about ("reference"). Where

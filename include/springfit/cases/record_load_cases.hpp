@@ -14,8 +14,8 @@ namespace springfit {
 template <int Dim, std::floating_point Scalar>
 struct RecordEquilibriaOptions {
     Scalar strain = Scalar(0.05); ///< of the specimen's edges in the linear response (`scale_to_strain`), in (0, 1)
-    /// Largest displacement in that response, as a part of the body's size, above 0. It comes first in slender bodies and
-    /// in those that swing on a thin clamp: far beyond it a case is about that swing alone.
+    /// Largest displacement in that response, as a part of the body's size, above 0. It comes first in slender bodies
+    /// and in those that swing on a thin clamp: far beyond it a case is about that swing alone.
     Scalar deformation = Scalar(0.25);
     /// Displacements `[Dim x n_nodes]` under small loads; empty: the reference's own `linear_responses`.
     std::function<std::vector<Points<Dim, Scalar>>(const std::vector<Scenario<Dim, Scalar>>&)> responses{};

@@ -93,8 +93,8 @@ template <int Dim, std::floating_point Scalar>
 
 /// Scales the loads of scenarios such that the linear response strains 95 % of the pairs of nodes by no more than
 /// `strain` and none by more than four times that, which local loads reach first, and displaces no node by more than
-/// `displacement`, m, which slender bodies reach first; returns the factors. Where a case has no response or one without
-/// strain, its loads stay as they are and its factor is 0.
+/// `displacement`, m, which slender bodies reach first; returns the factors. Where a case has no response or one
+/// without strain, its loads stay as they are and its factor is 0.
 ///
 ///     scale_to_strain(cases, edges(mesh), mesh.nodes, 0.15,
 ///                     [&](const auto& scenarios) { return linear_responses(model, scenarios); });
@@ -106,10 +106,10 @@ template <int Dim, std::floating_point Scalar>
 template <int Dim, std::floating_point Scalar, class Respond>
     requires std::convertible_to<std::invoke_result_t<const Respond&, const std::vector<Scenario<Dim, Scalar>>&>,
                                  std::vector<Points<Dim, Scalar>>>
-std::vector<Scalar> scale_to_strain(std::vector<Scenario<Dim, Scalar>>& scenarios, const NodePairs& pairs,
-                                    const Points<Dim, Scalar>& rest, std::type_identity_t<Scalar> strain,
-                                    const Respond& respond,
-                                    std::type_identity_t<Scalar> displacement = std::numeric_limits<Scalar>::infinity()) {
+std::vector<Scalar>
+scale_to_strain(std::vector<Scenario<Dim, Scalar>>& scenarios, const NodePairs& pairs, const Points<Dim, Scalar>& rest,
+                std::type_identity_t<Scalar> strain, const Respond& respond,
+                std::type_identity_t<Scalar> displacement = std::numeric_limits<Scalar>::infinity()) {
     require(displacement > 0, "displacement", "a length above 0", displacement);
     require(strain > 0 && strain < 1, "strain", "a value in (0, 1)", strain);
     const std::vector<Points<Dim, Scalar>> responses = respond(std::as_const(scenarios));

@@ -202,8 +202,9 @@ private:
 
     static constexpr Scalar n_periods = Scalar(1.25); ///< that a motion lasts, of the slowest response
     static constexpr Scalar ramp = Scalar(0.3);       ///< part of the motion in which loads grow
-    /// An oscillator whose load grows over the time t of its period T as in `ramp_and_release`, then stays, swings out to
-    /// 1 + 3 (sin a - a cos a) / a^3, a = pi t / T, times its response at rest: Fourier's transform of the load's growth.
+    /// An oscillator whose load grows over the time t of its period T as in `ramp_and_release`, then stays, swings out
+    /// to 1 + 3 (sin a - a cos a) / a^3, a = pi t / T, times its response at rest: Fourier's transform of the load's
+    /// growth.
     inline static const Scalar overshoot = [] {
         const Scalar a = std::numbers::pi_v<Scalar> * ramp * n_periods;
         return 1 + 3 * (std::sin(a) - a * std::cos(a)) / (a * a * a);
