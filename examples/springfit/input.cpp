@@ -81,6 +81,7 @@ void refuse_meshing_options(const FitOptions& options) {
         cgal::TriangulateOptions how;
         how.cell_size = options.cell_size.value_or(0);
         how.n_nodes = options.cell_size ? 0 : options.nodes.value_or(default_nodes);
+        how.several_pieces = true; // which the program says, and clamps have to hold
         return cgal::triangulate<double>(std::filesystem::path(options.input), how);
     }
     require(is_one_of(kind, {".msh", ".mesh", ".node", ".ele", ".vtk"}), "INPUT",

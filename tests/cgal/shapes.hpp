@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <numbers>
 #include <random>
 #include <string>
 
@@ -53,6 +54,24 @@ inline Triangles l_shape() {
     for (int i = 0; i < 6; ++i) {
         const int j = (i + 1) % 6;
         polygons.push_back({i, j, 6 + j, 6 + i});
+    }
+    return triangles(points, polygons);
+}
+
+/// A ring of circles of radius `thick`, `around` of them of `across` points, about a circle of radius `wide`.
+inline Triangles torus(double wide, double thick, int around, int across) {
+    std::vector<std::array<double, 3>> points;
+    std::vector<std::vector<int>> polygons;
+    for (int i = 0; i < around; ++i) {
+        for (int j = 0; j < across; ++j) {
+            const double a = 2 * std::numbers::pi * i / around;
+            const double b = 2 * std::numbers::pi * j / across;
+            const double r = wide + thick * std::cos(b);
+            points.push_back({r * std::cos(a), r * std::sin(a), thick * std::sin(b)});
+            const int next = (i + 1) % around * across;
+            const int up = (j + 1) % across;
+            polygons.push_back({i * across + j, next + j, next + up, i * across + up});
+        }
     }
     return triangles(points, polygons);
 }

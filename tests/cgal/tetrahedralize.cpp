@@ -155,13 +155,33 @@ TEST_CASE("what cannot be meshed is refused with what is wrong") {
                    1.) < 1e-12);
     CHECK_THROWS_AS((void)cgal::tetrahedralize<double>("/no/such/surface.off", {.cell_size = 1}), FileError);
 
-    const auto apart = test::both(surface, surface, {3, 0, 0});
-    CHECK_THROWS_WITH_AS((void)cgal::tetrahedralize<double>(apart, {.cell_size = 0.5}),
-                         "cell_size: expected a mesh of one piece (finer cells join thin parts; several_pieces accepts "
-                         "more), found 2 pieces",
+    const auto two = cgal::tetrahedralize<double>(test::both(surface, surface, {3, 0, 0}), {.cell_size = 0.5});
+    CHECK_NOTHROW(cgal::detail::check_result(two, Options{.cell_size = 0.5}, 2));
+    CHECK_THROWS_WITH_AS(cgal::detail::check_result(two, Options{.cell_size = 0.5}, 1),
+                         "cell_size: expected a mesh of one piece, as the surface bounds (more nodes join thin parts), "
+                         "found 2 pieces",
                          InvalidArgument);
-    CHECK(relative(volume(cgal::tetrahedralize<double>(apart, {.cell_size = 0.5, .several_pieces = true})), 2., 2.) <
-          1e-12);
+    CHECK_NOTHROW(cgal::detail::check_result(two, Options{.cell_size = 0.5, .several_pieces = true}, 1));
+}
+
+TEST_CASE("a surface of two bodies gives a mesh of two pieces; a hollow is none") {
+    const auto box = test::box(1, 1, 1);
+    const auto apart = test::both(box, box, {3, 0, 0});
+    CHECK(cgal::detail::n_bodies(apart) == 2);
+    const auto mesh = cgal::tetrahedralize<double>(apart, {.cell_size = 0.5});
+    CHECK(relative(volume(mesh), 2., 2.) < 1e-12);
+    CHECK(cgal::detail::n_pieces(mesh) == 2);
+    auto hollow = test::both(test::box(3, 3, 3), box, {1, 1, 1});
+    hollow.cells.rightCols(box.n_cells()).row(0).swap(hollow.cells.rightCols(box.n_cells()).row(1));
+    CHECK(cgal::detail::n_bodies(hollow) == 1);
+}
+
+TEST_CASE("a thin ring without sharp edges is meshed, though no line through its middle meets it") {
+    const auto ring = test::torus(0.5, 0.06, 60, 14);
+    const auto mesh = cgal::tetrahedralize<double>(ring, {.n_nodes = 600});
+    CHECK(cgal::detail::n_pieces(mesh) == 1);
+    const double exact = 2 * std::numbers::pi * std::numbers::pi * 0.5 * 0.06 * 0.06;
+    CHECK(relative(volume(mesh), exact, exact) < 0.1);
 }
 
 TEST_CASE("the caller may stop the search and gets the best mesh so far") {

@@ -19,7 +19,7 @@ struct TetrahedralizeOptions {
     double surface_distance =
         0;                    ///< farthest that the mesh's surface lies from the given one, m, >= 0; 0: cell_size / 5
     double sliver_angle = 12; ///< dihedral angles below this are removed as far as possible, degrees, >= 0; 0: none
-    bool several_pieces = false; ///< accept a mesh of several pieces that no face joins; if not, crumbs are left out
+    bool several_pieces = false; ///< accept a mesh of more pieces than the surface bounds; if not, crumbs are left out
     unsigned seed = 0;           ///< of the mesher's random numbers; the same seed gives the same mesh
     RepairOptions repair{};      ///< of the surface, before it is meshed
     ProgressCallback progress{}; ///< called after each meshing; returning false takes the best mesh so far as it is
@@ -29,8 +29,8 @@ struct TetrahedralizeOptions {
 ///
 /// The same input gives the same mesh. Throws InvalidArgument for an option out of range, for a surface that does not
 /// bound a solid (open, self-intersecting, without volume: what is wrong and how many), where no tetrahedron fits, and
-/// where the mesh falls into pieces (those below 1 % of the volume are left out). O(n_nodes log n_nodes) per meshing,
-/// of which a wanted `n_nodes` takes two or three as a rule.
+/// where the mesh falls into more pieces than the surface has (those below 1 % of the volume are left out). O(n_nodes
+/// log n_nodes) per meshing, of which a wanted `n_nodes` takes two or three as a rule.
 template <std::floating_point Scalar>
 [[nodiscard]] Mesh<3, Scalar, Tet4> tetrahedralize(const Surface& surface, const TetrahedralizeOptions& options);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <unordered_map>
 
 #include <CGAL/Mesh_criteria_3.h>
@@ -34,18 +35,38 @@ inline void SolidMesher::State::prepare(const std::vector<SharpLine>& wanted) {
     CGAL::get_default_random() = CGAL::Random(seed);
 }
 
+/// Points on the surface to begin with, until a facet of their triangulation follows it: CGAL's own dozen, which miss a
+/// thin ring, then more.
+inline constexpr std::array<int, 4> initial_points{-1, 100, 1000, 10000};
+
 /// Delaunay refinement alone. CGAL's `make_mesh_3` does the same where it is asked for no optimisation, but has all of
 /// its optimisers compiled.
 inline void refine(SolidComplex& complex, const SolidDomain& domain, const SolidCriteria& criteria) {
     using Complex = SolidComplex::Complex;
 #if CGAL_VERSION_NR < CGAL_VERSION_NUMBER(5, 6, 0)
-    CGAL::Mesh_3::internal::C3t3_initializer<Complex, SolidDomain, SolidCriteria, true>()(complex.complex, domain,
-                                                                                          criteria, true);
+    for (const int n_points : initial_points) {
+        CGAL::parameters::internal::Mesh_3_options options;
+        options.number_of_initial_points = n_points;
+        complex.complex = Complex();
+        CGAL::Mesh_3::internal::C3t3_initializer<Complex, SolidDomain, SolidCriteria, true>()(complex.complex, domain,
+                                                                                              criteria, true, options);
+        Complex facets = complex.complex;
+        CGAL::Mesh_3::C3T3_helpers<Complex, SolidDomain>(facets, domain).update_restricted_facets();
+        if (facets.number_of_facets() > 0) {
+            break;
+        }
+    }
     CGAL::Mesh_3::Mesher_3<Complex, SolidCriteria, SolidDomain>(complex.complex, domain, criteria).refine_mesh();
     complex.complex.clear_manifold_info();
 #else
-    complex.complex =
-        CGAL::make_mesh_3<Complex>(domain, criteria, CGAL::parameters::no_perturb(), CGAL::parameters::no_exude());
+    for (const int n_points : initial_points) {
+        complex.complex = CGAL::make_mesh_3<Complex>(
+            domain, criteria, CGAL::parameters::no_perturb(), CGAL::parameters::no_exude(),
+            CGAL::parameters::mesh_3_options(CGAL::parameters::number_of_initial_points = n_points));
+        if (complex.complex.number_of_facets() > 0) {
+            break;
+        }
+    }
 #endif
 }
 

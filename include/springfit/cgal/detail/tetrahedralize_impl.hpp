@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+
 #include <springfit/cgal/detail/body_unit.hpp>
 #include <springfit/cgal/detail/clean_solid.hpp>
 #include <springfit/cgal/detail/sharp_edges.hpp>
@@ -32,9 +34,21 @@ inline void check(const TetrahedralizeOptions& options) {
             options.sliver_angle);
 }
 
-/// Throws InvalidArgument unless there are cells, all of positive volume, in one piece if that is asked for.
+/// Number of pieces of a surface that have their inside within: bodies, not the hollows in them.
+[[nodiscard]] inline Index n_bodies(const Surface& surface) {
+    const std::vector<int> piece = pieces(surface);
+    std::vector<double> volume(piece.size(), 0.);
+    for (std::size_t c = 0; c < piece.size(); ++c) {
+        const auto corners = surface.cell_nodes(static_cast<Index>(c));
+        volume[static_cast<std::size_t>(piece[c])] += corners.col(0).dot(corners.col(1).cross(corners.col(2)));
+    }
+    return std::count_if(volume.begin(), volume.end(), [](double v) { return v > 0; });
+}
+
+/// Throws InvalidArgument unless there are cells, all of positive volume, in no more than `n_bodies` pieces if that is
+/// asked for.
 template <std::floating_point Scalar>
-void check_result(const Mesh<3, Scalar, Tet4>& mesh, const TetrahedralizeOptions& options) {
+void check_result(const Mesh<3, Scalar, Tet4>& mesh, const TetrahedralizeOptions& options, Index n_bodies) {
     const std::string_view size = options.cell_size != 0 ? "cell_size" : "n_nodes";
     require(mesh.n_cells() > 0, size, "a size at which the solid holds a tetrahedron", "none");
     for (Index c = 0; c < mesh.n_cells(); ++c) {
@@ -45,7 +59,9 @@ void check_result(const Mesh<3, Scalar, Tet4>& mesh, const TetrahedralizeOptions
     }
     if (!options.several_pieces) {
         const Index pieces = n_pieces(mesh);
-        require(pieces == 1, size, "a mesh of one piece (finer cells join thin parts; several_pieces accepts more)",
+        require(pieces <= n_bodies, size,
+                text("a mesh of ", n_bodies == 1 ? "one piece" : text(n_bodies, " pieces"),
+                     ", as the surface bounds (more nodes join thin parts)"),
                 text(pieces, " pieces"));
     }
 }
@@ -140,7 +156,7 @@ template <std::floating_point Scalar>
         solid = without_crumbs(solid, crumb_share);
     }
     Mesh<3, Scalar, Tet4> mesh{solid.nodes.cast<Scalar>(), solid.cells};
-    check_result(mesh, options);
+    check_result(mesh, options, n_bodies(surface.surface));
     mesh.nodes *= static_cast<Scalar>(unit);
     return mesh;
 }
