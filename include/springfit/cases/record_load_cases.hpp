@@ -28,7 +28,9 @@ struct RecordEquilibriaOptions {
 ///
 ///     auto cases = record_equilibria(reference, specimen, random_load_cases(specimen, {.training = 60}));
 ///
-/// They are sorted by their roles; those that find no equilibrium are left out, with a warning, and there may be none.
+/// Loads under which the reference finds no equilibrium, or goes more than one and a half times as far as its linear
+/// response (it buckles, or topples), are halved, up to four times. Cases are sorted by their roles; those that find no
+/// equilibrium even then are left out, with a warning, and there may be none.
 /// Throws InvalidArgument for a specimen without edges, for a strain out of range, and where the reference does.
 template <int Dim, std::floating_point Scalar>
 [[nodiscard]] RecordedCases<Dim, Scalar>

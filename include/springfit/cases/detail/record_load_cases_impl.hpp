@@ -5,6 +5,53 @@
 
 namespace springfit {
 
+namespace detail {
+
+/// A body whose largest displacement is beyond so many times that of its linear response has buckled or toppled.
+inline constexpr double buckled = 1.5;
+/// How often the loads of such a case are halved at most.
+inline constexpr int most_halvings = 4;
+
+/// Halves the loads of cases in which the reference buckles, or finds no equilibrium, and records them again, until
+/// they do not: beyond, a case is about that fall alone, and its strain is far above what was asked for.
+/// `scenarios` are scaled by `factors`, per unit of which `responses` are.
+template <int Dim, std::floating_point Scalar>
+void record_unbuckled(const CaseRecorder<Dim, Scalar>& reference, const std::vector<Points<Dim, Scalar>>& responses,
+                      std::vector<Scalar>& factors, std::vector<Scenario<Dim, Scalar>>& scenarios,
+                      std::vector<Recording<Dim, Scalar>>& recordings, StaticRecordOptions<Scalar> how) {
+    how.progress = [ask = how.progress](const Progress& progress) { return go_on(ask, progress.stage, 1); };
+    const auto has_buckled = [&](std::size_t c) {
+        const auto& [motion, status] = recordings[c];
+        if (factors[c] == 0 || status == Status::interrupted) {
+            return false;
+        }
+        const Scalar expected = factors[c] * responses[c].colwise().norm().maxCoeff();
+        return status != Status::converged ||
+               (motion.positions[0] - motion.rest_positions).colwise().norm().maxCoeff() > Scalar(buckled) * expected;
+    };
+    for (int halving = 0; halving < most_halvings; ++halving) {
+        std::vector<std::size_t> again;
+        std::vector<Scenario<Dim, Scalar>> halved;
+        for (std::size_t c = 0; c < scenarios.size(); ++c) {
+            if (has_buckled(c)) {
+                scale_loads(scenarios[c], Scalar(0.5));
+                factors[c] /= 2;
+                again.push_back(c);
+                halved.push_back(scenarios[c]);
+            }
+        }
+        if (again.empty()) {
+            return;
+        }
+        auto recorded = reference.record_statics(halved, how);
+        for (std::size_t a = 0; a < again.size(); ++a) {
+            recordings[again[a]] = std::move(recorded[a]);
+        }
+    }
+}
+
+} // namespace detail
+
 template <int Dim, std::floating_point Scalar>
 RecordedCases<Dim, Scalar>
 record_equilibria(const CaseRecorder<Dim, Scalar>& reference, const Specimen<Dim, Scalar>& specimen,
@@ -16,20 +63,29 @@ record_equilibria(const CaseRecorder<Dim, Scalar>& reference, const Specimen<Dim
         scenarios.push_back(load_case.scenario);
     }
     const StaticRecordOptions<Scalar> how{.execution = options.execution, .progress = options.progress};
+    std::vector<Points<Dim, Scalar>> responses;
     const auto respond = [&](const auto& all) {
-        return options.responses ? options.responses(all)
-                                 : reference.linear_responses(all, {.execution = options.execution});
+        responses = options.responses ? options.responses(all)
+                                      : reference.linear_responses(all, {.execution = options.execution});
+        return responses;
     };
-    (void)scale_to_strain<Dim, Scalar>(scenarios, specimen.edges, specimen.rest_positions, options.strain, respond,
-                                       options.deformation * specimen.size());
+    auto factors = scale_to_strain<Dim, Scalar>(scenarios, specimen.edges, specimen.rest_positions, options.strain,
+                                                respond, options.deformation * specimen.size());
     auto recordings = reference.record_statics(scenarios, how);
+    if (!options.responses) { // those of another model say nothing of how this one bends
+        detail::record_unbuckled(reference, responses, factors, scenarios, recordings, how);
+    }
     RecordedCases<Dim, Scalar> recorded;
     for (std::size_t c = 0; c < cases.size(); ++c) {
         auto& [motion, status] = recordings[c];
         if (status == Status::converged) {
             motion.name = "static " + scenarios[c].name;
             cases[c].scenario = std::move(scenarios[c]);
-            cases[c].strain = options.strain;
+            if (factors[c] > 0) {
+                cases[c].strain =
+                    factors[c] *
+                    detail::scaled_strain(linear_edge_strain(specimen.edges, specimen.rest_positions, responses[c]));
+            }
             recorded.add(std::move(cases[c]), std::move(motion));
         } else if (status == Status::interrupted) {
             recorded.interrupted = true;
