@@ -142,3 +142,21 @@ TEST_CASE("the damping of a recording may be told, and the time step's error is 
     options.damping_ratio = 1;
     CHECK_THROWS_AS((void)calibrate(test::even(truth), split_motions<2, double>(recorded), options), InvalidArgument);
 }
+
+TEST_CASE("times in another unit are remarked on, and refused where frames show nothing of the motion") {
+    const auto truth = test::hidden_network<2>();
+    CalibrateOptions options;
+    options.method = Method::closed_form;
+    const auto slower = [&](double factor) {
+        std::vector<Motion<2, double>> recorded{falling(truth, 1), falling(truth, 0.2)};
+        for (auto& motion : recorded) {
+            for (double& time : motion.times) {
+                time *= factor;
+            }
+        }
+        return split_motions<2, double>(recorded);
+    };
+    CHECK(!warns(calibrate(truth, slower(1), options).warnings, WarningCode::other_unit));
+    CHECK(warns(calibrate(truth, slower(60), options).warnings, WarningCode::other_unit));
+    CHECK_THROWS_AS((void)calibrate(truth, slower(1000), options), InvalidArgument);
+}

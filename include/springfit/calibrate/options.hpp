@@ -70,7 +70,8 @@ struct CalibrateOptions {
     /// Of matching of motion at most, > 0, of wall clock: the result then depends on the machine. None: no limit.
     std::optional<double> matching_seconds{};
 
-    int scored_training_cases = 8; ///< at most, evenly spread, >= 0: what a fit has seen says little
+    int scored_training_cases = 8; ///< at most, evenly spread over its equilibria, or motions where there are none,
+                                   ///< >= 0: what a fit has seen says little
     double near_equal = 1.2;       ///< of networks whose errors differ by less than this factor, the one with fewer
                                    ///< springs and cells is returned, >= 1
     VerdictLimits limits{};

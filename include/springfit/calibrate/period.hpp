@@ -45,4 +45,24 @@ template <int Dim>
              .values = {{"recorded", recorded}, {"period", period}}}};
 }
 
+/// Throws InvalidArgument for a recording whose frames are more than two of the body's slowest periods apart: they do
+/// not show how it moves.
+template <int Dim>
+void check_frame_gaps(double period, const RecordedCases<Dim, double>& cases) {
+    for (const auto* set : {&cases.training, &cases.held_out}) {
+        for (const auto& motion : set->motions) {
+            if (motion.n_frames() > 1 && cases.period == 0 && period > 0) {
+                const double gap =
+                    (motion.times.back() - motion.times.front()) / static_cast<double>(motion.n_frames() - 1);
+                require(
+                    gap <= 2 * period, text("motion '", motion.name, "'"),
+                    text("frames at most two of the body's slowest periods, about ", period,
+                         " s each, apart, lengths in m and times in s (--unit mm, --time-unit ms); of a body that is "
+                         "loaded slowly, frames at rest in a file each"),
+                    text("frames ", gap, " s apart"));
+            }
+        }
+    }
+}
+
 } // namespace springfit

@@ -255,6 +255,7 @@ Calibration<Dim> calibrate(const std::vector<NetworkVariant<Dim>>& variants, Rec
     result.seconds = {{"fit", 0.}, {"score", 0.}};
     const auto& first = variants.front().given.front().network;
     result.period = slowest_period(first, cases);
+    check_frame_gaps(result.period, cases);
     const auto of_units = warnings_of_units(result.period, cases);
     result.warnings.insert(result.warnings.end(), of_units.begin(), of_units.end());
 

@@ -155,7 +155,6 @@ private:
         how.execution = m_options.execution;
         how.prior_weight = m_options.prior_weight;
         if (in_time) {
-            check_frames(prior, motions);
             how.horizon = m_options.horizon;
             how.steps_per_frame =
                 m_options.steps_per_frame > 0 ? m_options.steps_per_frame : steps_per_frame(motions, how.horizon);

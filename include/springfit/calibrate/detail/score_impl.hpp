@@ -100,14 +100,21 @@ public:
         }
     }
 
-    /// On a sample of the training's cases.
+    /// On a sample of the training's equilibria, which matching learns from, or of its motions where there are none.
     void score_training() {
         const auto most = static_cast<std::size_t>(m_options.scored_training_cases);
-        std::vector<std::size_t> numbers;
-        const std::size_t n = m_cases.training.size();
-        for (std::size_t c = 0; most > 0 && c < n; c += (n + most - 1) / most) {
-            numbers.push_back(c);
+        std::vector<std::size_t> numbers(m_cases.training.size());
+        std::iota(numbers.begin(), numbers.end(), std::size_t(0));
+        const auto is_static = [&](std::size_t c) { return m_cases.training.is_static(c); };
+        if (std::any_of(numbers.begin(), numbers.end(), is_static)) {
+            std::erase_if(numbers, [&](std::size_t c) { return !is_static(c); });
         }
+        const std::size_t stride = most > 0 ? (numbers.size() + most - 1) / most : 0;
+        std::size_t n = 0;
+        for (std::size_t c = 0; stride > 0 && c < numbers.size(); c += stride) {
+            numbers[n++] = numbers[c];
+        }
+        numbers.resize(n);
         const auto sample = m_cases.training.subset(numbers);
         for (auto* candidate : m_order) {
             if (!numbers.empty() && !candidate->training.is_scored() && !m_stage.stopped()) {

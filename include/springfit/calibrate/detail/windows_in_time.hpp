@@ -113,18 +113,4 @@ FoundDamping find_damping(SpringNetwork<Dim, double> network, const std::vector<
     return found;
 }
 
-/// Throws InvalidArgument for frames that are more than two of the network's slowest periods apart: they do not show
-/// how it moves.
-template <int Dim>
-void check_frames(const SpringNetwork<Dim, double>& network, const std::vector<Motion<Dim, double>>& motions) {
-    for (const auto& motion : motions) {
-        const double gap = motion.n_frames() > 1 ? (motion.times.back() - motion.times.front()) /
-                                                       static_cast<double>(motion.n_frames() - 1)
-                                                 : 0.;
-        const double turns = gap * lowest_frequency(network, motion.clamped).omega / (2 * std::numbers::pi);
-        require(turns <= 2, text("motion '", motion.name, "'"),
-                "frames at most two of the body's slowest periods apart", text(turns, " periods"));
-    }
-}
-
 } // namespace springfit::detail
