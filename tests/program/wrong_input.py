@@ -150,7 +150,7 @@ refused("no masses", ["fit", folder / "strip.h5", *MATERIAL, "--mass-from", fold
         ["mass.json", "/nodes/mass"])
 refused("masses that are not there", ["fit", folder / "strip.h5", *MATERIAL, "--mass-from", folder / "other.h5"],
         ["other.h5", "/mesh/mass"])
-bodies.write_motion(folder / "slow.h5", points, triangles, 1e9 * np.asarray(times), displacement)
+bodies.write_motion(folder / "slow.h5", points, triangles, 1e9 * times, displacement)
 refused("frames that are many periods apart", ["fit", folder / "slow.h5", *MATERIAL], ["slow", "--time-unit ms"])
 refused("mesh after a motion", ["fit", folder / "strip.h5", cube, *MATERIAL], ["INPUT", "recorded motions"])
 refused("meshing option for a motion", ["fit", folder / "strip.h5", *MATERIAL, "--nodes", "100"], ["--nodes"])
