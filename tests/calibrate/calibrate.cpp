@@ -168,14 +168,6 @@ TEST_CASE(
     }
     const auto nothing = calibrate(even(hidden<2>()), split_motions<2, double>({motion}), options);
     CHECK(nothing.verdict == Verdict::unusable);
-    // Times in milliseconds are remarked on.
-    for (double& time : motion.times) {
-        time *= 1000;
-    }
-    options.method = Method::closed_form;
-    const auto slow = calibrate(even(hidden<2>()), split_motions<2, double>({motion}), options);
-    CHECK(std::any_of(slow.warnings.begin(), slow.warnings.end(),
-                      [](const auto& warning) { return warning.code == WarningCode::other_unit; }));
 }
 
 TEST_CASE("methods that are asked for are returned") {

@@ -8,16 +8,18 @@ using namespace springfit;
 
 namespace {
 
-/// The motion of a network under a weight that comes on at once, over two of its slowest periods.
+/// The motion of a network, damped by 5 % of critical, under a weight that grows over half of its slowest period, over
+/// two of them.
 template <int Dim>
-Motion<Dim, double> falling(const SpringNetwork<Dim, double>& network, double aside) {
+Motion<Dim, double> falling(SpringNetwork<Dim, double> network, double aside) {
     Scenario<Dim, double> scenario;
     scenario.clamps = {{test::small_specimen<Dim>().clamps.front().nodes, {}}};
-    Vector<Dim, double> g = Vector<Dim, double>::Constant(-0.5);
-    g(0) = aside;
-    scenario.gravity.push_back({g, {}});
     const double omega = lowest_frequency(network, scenario.clamps.front().nodes).omega;
     const double period = 2 * std::numbers::pi / omega;
+    Vector<Dim, double> g = Vector<Dim, double>::Constant(-0.5);
+    g(0) = aside;
+    scenario.gravity.push_back({g, ramp_and_release(period / 2, period)});
+    network.damping = stiffness_proportional_damping(network, 2 * 0.05 / omega);
     return record(network, scenario, {.dt = period / 40, .frames = 80}).motion;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tolerance.hpp"
 
-#include <springfit/cases/clamp_sets.hpp>
+#include <springfit/cases/load_cases.hpp>
 #include <springfit/mesh/structured.hpp>
 
 #include "specimens.hpp"
@@ -122,4 +122,33 @@ TEST_CASE("a flat sheet in space is clamped within its plane, a body without cla
     CHECK(sets.held_out != sets.training[0]);
     sheet.masses(2) = 0;
     CHECK_THROWS_AS((void)clamp_sets(sheet), InvalidArgument);
+}
+
+TEST_CASE_TEMPLATE("every set holds every piece of a body that is in two", T, test::Space<2, double>,
+                   test::Space<3, double>) {
+    constexpr int dim = T::dimension;
+    const auto one = test::small_specimen<dim>();
+    const auto n = one.n_nodes();
+    Specimen<dim, double> two;
+    two.rest_positions.resize(dim, 2 * n);
+    two.rest_positions << one.rest_positions, one.rest_positions;
+    two.rest_positions.row(0).tail(n).array() += 2 * one.size();
+    two.masses.resize(2 * n);
+    two.masses << one.masses, one.masses;
+    two.edges.resize(2, 2 * one.edges.cols());
+    two.edges << one.edges, one.edges.array() + static_cast<int>(n);
+    for (int i = 0; i < 2 * static_cast<int>(n); ++i) {
+        two.surface.push_back(i);
+    }
+    two.clamps = {{side_nodes(two.rest_positions, {.axis = 1}), {}}};
+    const auto sets = clamp_sets(two, {.training = 3, .held_out = false});
+    CHECK(sets.training.size() >= 2); // the two sides across y at least
+    for (const auto& nodes : sets.training) {
+        const auto middle = std::lower_bound(nodes.begin(), nodes.end(), static_cast<int>(n));
+        CHECK(holds_rigidly(two.rest_positions, {nodes.begin(), middle}));
+        CHECK(holds_rigidly(two.rest_positions, {middle, nodes.end()}));
+    }
+    CHECK(clamp_sets(two, {.training = 50, .held_out = false}).training.size() < 50);
+    const auto cases = random_load_cases(two, {.training = 12, .clamps = 50});
+    CHECK(cases.size() >= 12);
 }

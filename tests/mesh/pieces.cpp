@@ -33,3 +33,16 @@ TEST_CASE_TEMPLATE("points that coincide are counted, in any unit", T, SPRINGFIT
     CHECK(n_coinciding<dim, Scalar>(Scalar(1e-9) * points) == 3);
     CHECK(n_coinciding<dim, Scalar>(Points<dim, Scalar>::Zero(dim, 2)) == 2);
 }
+
+TEST_CASE("nodes of one piece have one number") {
+    NodePairs pairs(2, 3);
+    pairs << 4, 1, 3, //
+        2, 4, 5;
+    const auto piece = piece_of_nodes(6, pairs); // 0 | 1 4 2 | 3 5
+    CHECK(piece[1] == piece[2]);
+    CHECK(piece[1] == piece[4]);
+    CHECK(piece[3] == piece[5]);
+    CHECK(piece[0] != piece[1]);
+    CHECK(piece[0] != piece[3]);
+    CHECK(piece[1] != piece[3]);
+}

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cmath>
+#include <map>
 #include <type_traits>
 
 #include <Eigen/Eigenvalues>
 
 #include <springfit/cases/specimen.hpp>
+#include <springfit/mesh/pieces.hpp>
 
 namespace springfit {
 
@@ -94,6 +96,16 @@ public:
         const Vector<Dim, Scalar> low = body.rest_positions.rowwise().minCoeff();
         const Vector<Dim, Scalar> extent = body.rest_positions.rowwise().maxCoeff() - low;
         m_size = extent.norm();
+        if (body.edges.cols() > 0) {
+            std::map<Index, std::vector<int>> pieces;
+            const auto piece = piece_of_nodes(body.n_nodes(), body.edges);
+            for (std::size_t i = 0; i < piece.size(); ++i) {
+                pieces[piece[i]].push_back(static_cast<int>(i));
+            }
+            for (auto& [root, nodes] : pieces) {
+                m_pieces.push_back(std::move(nodes));
+            }
+        }
         for (int axis = 0; axis < Dim; ++axis) {
             for (const bool at_max : {false, true}) {
                 if (extent(axis) > Scalar(1e-3) * m_size) { // not across a flat sheet
@@ -102,6 +114,9 @@ public:
             }
         }
     }
+
+    /// True where no force passes between parts of the body.
+    [[nodiscard]] bool is_in_pieces() const { return m_pieces.size() > 1; }
 
     void take(std::vector<int> nodes) { m_taken.push_back(std::move(nodes)); }
 
@@ -149,9 +164,19 @@ private:
     }
 
     [[nodiscard]] bool is_usable(const std::vector<int>& nodes, Scalar close) const {
-        return 2 * static_cast<Index>(nodes.size()) <= m_body->n_nodes() &&
-               holds_rigidly(m_body->rest_positions, nodes, close) &&
+        return 2 * static_cast<Index>(nodes.size()) <= m_body->n_nodes() && holds_every_piece(nodes, close) &&
                std::none_of(m_taken.begin(), m_taken.end(), [&](const auto& set) { return overlap(set, nodes); });
+    }
+
+    [[nodiscard]] bool holds_every_piece(const std::vector<int>& nodes, Scalar close) const {
+        if (!is_in_pieces()) {
+            return holds_rigidly(m_body->rest_positions, nodes, close);
+        }
+        return std::all_of(m_pieces.begin(), m_pieces.end(), [&](const auto& piece) {
+            std::vector<int> held;
+            std::set_intersection(nodes.begin(), nodes.end(), piece.begin(), piece.end(), std::back_inserter(held));
+            return holds_rigidly(m_body->rest_positions, held, close);
+        });
     }
 
     [[nodiscard]] Scalar distance_from_taken(const Vector<Dim, Scalar>& centre) const {
@@ -184,6 +209,7 @@ private:
 
     const Specimen<Dim, Scalar>* m_body;
     Scalar m_size = 0;
+    std::vector<std::vector<int>> m_pieces; ///< their nodes, ascending; none where edges are not known
     std::vector<std::vector<int>> m_sides;
     std::vector<std::vector<int>> m_taken;
 };
@@ -196,8 +222,9 @@ private:
 /// farthest from the body's own, as the other end of a beam.
 ///
 /// Every set but the body's own leaves no rigid motion (`holds_rigidly`), holds at most half of the nodes, and shares
-/// with no other more than half of the nodes that both hold together. The result goes by positions, not by node
-/// numbers. Throws InvalidArgument where the body has not that many. O(nodes) for sides, O(surface^2) for patches.
+/// with no other more than half of the nodes that both hold together. Of a body in pieces, by its edges, it holds every
+/// piece, and there may be fewer sets than asked for. The result goes by positions, not by node numbers. Throws
+/// InvalidArgument where another body has not that many. O(nodes) for sides, O(surface^2) for patches.
 template <int Dim, std::floating_point Scalar>
 [[nodiscard]] ClampSets clamp_sets(const Specimen<Dim, Scalar>& body, const ClampSetOptions& options = {}) {
     validate(body);
@@ -212,6 +239,9 @@ template <int Dim, std::floating_point Scalar>
         std::vector<int> nodes = s == 0 ? clamped_nodes(own, body.n_nodes()) : std::vector<int>{};
         if (nodes.empty()) {
             nodes = picker.next();
+        }
+        if (nodes.empty() && picker.is_in_pieces() && sets.size() > (options.held_out ? 1U : 0U)) {
+            break; // few sets hold every piece
         }
         require(!nodes.empty(), "training",
                 text("no more than the ", s, " clamp sets of the body, the held-out one included"), options.training);

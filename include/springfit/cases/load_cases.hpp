@@ -65,12 +65,13 @@ template <int Dim, std::floating_point Scalar>
     require(options.held_out_loads >= 0, "held_out_loads", "a number not below 0", options.held_out_loads);
     require(options.held_out_kinds >= 0, "held_out_kinds", "a number not below 0", options.held_out_kinds);
     require(options.held_out_clamp >= 0, "held_out_clamp", "a number not below 0", options.held_out_clamp);
-    const int clamps = std::min(options.clamps, options.training);
+    int clamps = std::min(options.clamps, options.training);
 
     // The body's own clamps, which may move, then nodes at rest; the last is held out.
     std::vector<Specimen<Dim, Scalar>> clamped{body};
     if (clamps > 1 || options.held_out_clamp > 0 || body.clamps.empty()) {
         ClampSets sets = clamp_sets(body, {.training = clamps, .held_out = options.held_out_clamp > 0});
+        clamps = static_cast<int>(sets.training.size()); // fewer for a body in pieces
         if (options.held_out_clamp > 0) {
             sets.training.push_back(sets.held_out);
         }

@@ -14,7 +14,8 @@ namespace springfit::cgal {
 /// How a solid is cut into tetrahedra. Give `cell_size` or `n_nodes`, not both.
 struct TetrahedralizeOptions {
     double cell_size = 0;         ///< wanted mean edge length, m, > 0
-    Index n_nodes = 0;            ///< wanted number of nodes, >= 4; met within 10 % where shape and sharp edges allow
+    Index n_nodes = 0;            ///< wanted number of nodes, >= 4; met within 10 % where shape and sharp edges allow;
+                                  ///< up to four times as many where thin parts fell apart
     double sharp_edge_angle = 60; ///< edges whose faces' normals differ by more are kept, degrees, in (0, 180]
     double surface_distance =
         0;                    ///< farthest that the mesh's surface lies from the given one, m, >= 0; 0: cell_size / 5

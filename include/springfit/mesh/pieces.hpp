@@ -11,9 +11,9 @@
 
 namespace springfit {
 
-/// The pieces that pairs of nodes `[2 x n_pairs]` connect: the number of nodes of each, the largest first; a node of no
-/// pair is a piece of its own. Throws InvalidArgument for a pair out of range. O(nodes + pairs).
-[[nodiscard]] inline std::vector<Index> pieces(Index n_nodes, const NodePairs& pairs) {
+/// For each node a node of its piece, the same for all of a piece, where pairs of nodes `[2 x n_pairs]` connect them; a
+/// node of no pair is a piece of its own. Throws InvalidArgument for a pair out of range. O(nodes + pairs).
+[[nodiscard]] inline std::vector<Index> piece_of_nodes(Index n_nodes, const NodePairs& pairs) {
     std::vector<Index> root(static_cast<std::size_t>(n_nodes));
     std::iota(root.begin(), root.end(), Index(0));
     const auto find = [&](Index node) {
@@ -30,9 +30,17 @@ namespace springfit {
         require(low >= 0 && high < n_nodes, "pairs", text("node numbers in [0, ", n_nodes, ")"), low < 0 ? low : high);
         root[static_cast<std::size_t>(find(high))] = find(low);
     }
-    std::vector<Index> sizes(static_cast<std::size_t>(n_nodes), 0);
     for (Index i = 0; i < n_nodes; ++i) {
-        ++sizes[static_cast<std::size_t>(find(i))];
+        root[static_cast<std::size_t>(i)] = find(i);
+    }
+    return root;
+}
+
+/// The number of nodes of each such piece, the largest first. Throws as `piece_of_nodes`.
+[[nodiscard]] inline std::vector<Index> pieces(Index n_nodes, const NodePairs& pairs) {
+    std::vector<Index> sizes(static_cast<std::size_t>(n_nodes), 0);
+    for (const Index piece : piece_of_nodes(n_nodes, pairs)) {
+        ++sizes[static_cast<std::size_t>(piece)];
     }
     std::erase(sizes, 0);
     std::sort(sizes.begin(), sizes.end(), std::greater<>());

@@ -101,38 +101,34 @@ private:
         }
     }
 
-    /// The principal motions of all nodes, again and again: what is not seen follows what is.
+    /// Gaps follow the principal motions of all nodes: first the largest alone, again and again until they rest, then
+    /// one more each time. All at once would take the lines that gaps begin as for motions.
     void project() {
         const auto n_frames = static_cast<Index>(m_displacements.size());
         if (n_frames < 4) {
             return;
         }
         constexpr double least = 1e-3; // part of the largest that a principal motion must have
+        constexpr Index most = 12;     // principal motions
         DenseMatrix<double> u(m_rest.size(), n_frames);
         for (Index t = 0; t < n_frames; ++t) {
             u.col(t) = m_displacements[static_cast<std::size_t>(t)].reshaped().template cast<double>();
         }
-        for (int iteration = 0; iteration < 50; ++iteration) {
-            const DenseMatrix<double> gram = u.transpose() * u;
-            const Eigen::SelfAdjointEigenSolver<DenseMatrix<double>> principal(gram);
-            Index rank = 0;
-            while (rank < n_frames / 2 && principal.eigenvalues()(n_frames - 1 - rank) >
-                                              least * least * principal.eigenvalues()(n_frames - 1)) {
-                ++rank;
-            }
-            const DenseMatrix<double> v = principal.eigenvectors().rightCols(rank);
-            const DenseMatrix<double> amplitudes = u * v;
-            double change = 0;
+        for (Index rank = 1; rank <= std::min(most, n_frames / 2); ++rank) {
             double size = 0;
-            for (Index t = 0; t < n_frames; ++t) {
-                for (int node : m_unobserved[static_cast<std::size_t>(t)]) {
-                    const Vector<Dim, double> filled = amplitudes.middleRows<Dim>(Dim * node) * v.row(t).transpose();
-                    change += (filled - u.col(t).segment<Dim>(Dim * node)).squaredNorm();
-                    size += filled.squaredNorm();
-                    u.col(t).segment<Dim>(Dim * node) = filled;
+            for (int iteration = 0; iteration < 50; ++iteration) {
+                const DenseMatrix<double> gram = u.transpose() * u;
+                const Eigen::SelfAdjointEigenSolver<DenseMatrix<double>> principal(gram);
+                size = principal.eigenvalues()(n_frames - rank) / principal.eigenvalues()(n_frames - 1);
+                if (!(size > least * least)) {
+                    break;
+                }
+                const DenseMatrix<double> v = principal.eigenvectors().rightCols(rank);
+                if (move_gaps(u, u * v, v) <= 1e-10) {
+                    break;
                 }
             }
-            if (change <= 1e-10 * size) {
+            if (!(size > least * least)) {
                 break;
             }
         }
@@ -142,6 +138,22 @@ private:
                 frame.col(node) = u.col(t).segment<Dim>(Dim * node).template cast<Scalar>();
             }
         }
+    }
+
+    /// Sets the gaps of u to amplitudes v', returns the square of the change beside that of their size.
+    double move_gaps(DenseMatrix<double>& u, const DenseMatrix<double>& amplitudes,
+                     const DenseMatrix<double>& v) const {
+        double change = 0;
+        double size = 0;
+        for (Index t = 0; t < u.cols(); ++t) {
+            for (int node : m_unobserved[static_cast<std::size_t>(t)]) {
+                const Vector<Dim, double> filled = amplitudes.middleRows<Dim>(Dim * node) * v.row(t).transpose();
+                change += (filled - u.col(t).segment<Dim>(Dim * node)).squaredNorm();
+                size += filled.squaredNorm();
+                u.col(t).segment<Dim>(Dim * node) = filled;
+            }
+        }
+        return size > 0 ? change / size : 0.;
     }
 
     const Points<Dim, Scalar>& m_rest;
@@ -157,9 +169,9 @@ private:
 /// ascending, or nothing where none does.
 ///
 /// A gap starts as a line in time, or for a node that is in no frame as the motion of the nodes around it; then all
-/// gaps are projected on the principal motions of the recording, those above a thousandth of the largest, until that
-/// changes them no more [our definition]. Throws InvalidArgument where no node is seen. O(nodes x frames^2) for each of
-/// up to 50 projections.
+/// gaps are projected on the principal motions of the recording, one more after another, up to twelve and those above a
+/// thousandth of the largest, each time until that changes them no more [our definition]. Throws InvalidArgument where
+/// no node is seen. O(nodes x frames^2) for each of up to 600 projections.
 template <int Dim, std::floating_point Scalar>
 [[nodiscard]] std::vector<std::vector<int>> fill_gaps(const Points<Dim, Scalar>& rest_positions,
                                                       const std::vector<Scalar>& times,

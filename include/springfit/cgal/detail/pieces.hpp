@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <numeric>
 
 #include <springfit/mesh/topology.hpp>
@@ -42,6 +43,18 @@ template <int Dim, std::floating_point Scalar, CellType Cell>
         n += piece[c] == static_cast<int>(c) ? 1 : 0;
     }
     return n;
+}
+
+/// Number of pieces of a surface that have their inside within: bodies, not the hollows in them.
+template <std::floating_point Scalar>
+[[nodiscard]] Index n_bodies(const Mesh<3, Scalar, Tri3>& surface) {
+    const std::vector<int> piece = pieces(surface);
+    std::vector<Scalar> volume(piece.size(), Scalar(0));
+    for (std::size_t c = 0; c < piece.size(); ++c) {
+        const auto corners = surface.cell_nodes(static_cast<Index>(c));
+        volume[static_cast<std::size_t>(piece[c])] += corners.col(0).dot(corners.col(1).cross(corners.col(2)));
+    }
+    return std::count_if(volume.begin(), volume.end(), [](Scalar v) { return v > 0; });
 }
 
 /// The mesh of the cells that are kept, with the nodes that they use, both in their old order.

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
-
 #include <springfit/cgal/detail/body_unit.hpp>
 #include <springfit/cgal/detail/clean_solid.hpp>
+#include <springfit/cgal/detail/pieces.hpp>
 #include <springfit/cgal/detail/sharp_edges.hpp>
 #include <springfit/cgal/detail/size_search.hpp>
 #include <springfit/cgal/detail/solid_mesher.hpp>
@@ -20,6 +19,9 @@ inline constexpr double flake_angle = 2;
 /// Pieces that hold less than this share of the volume are taken off, where one piece is wanted.
 inline constexpr double crumb_share = 0.01;
 
+/// Where thin parts fall apart, up to so many times the wanted nodes are tried, half as many more each time.
+inline constexpr Index most_more_nodes = 4;
+
 inline void check(const TetrahedralizeOptions& options) {
     const bool by_size = options.cell_size != 0;
     require(by_size != (options.n_nodes != 0), "cell_size, n_nodes", "one of the two", by_size ? "both" : "neither");
@@ -32,17 +34,6 @@ inline void check(const TetrahedralizeOptions& options) {
             "a length not below 0", options.surface_distance);
     require(options.sliver_angle >= 0 && options.sliver_angle <= 45, "sliver_angle", "an angle in [0, 45] degrees",
             options.sliver_angle);
-}
-
-/// Number of pieces of a surface that have their inside within: bodies, not the hollows in them.
-[[nodiscard]] inline Index n_bodies(const Surface& surface) {
-    const std::vector<int> piece = pieces(surface);
-    std::vector<double> volume(piece.size(), 0.);
-    for (std::size_t c = 0; c < piece.size(); ++c) {
-        const auto corners = surface.cell_nodes(static_cast<Index>(c));
-        volume[static_cast<std::size_t>(piece[c])] += corners.col(0).dot(corners.col(1).cross(corners.col(2)));
-    }
-    return std::count_if(volume.begin(), volume.end(), [](double v) { return v > 0; });
 }
 
 /// Throws InvalidArgument unless there are cells, all of positive volume, in no more than `n_bodies` pieces if that is
@@ -146,17 +137,24 @@ template <std::floating_point Scalar>
     surface.area = in_unit(surface.area, unit * unit);
     options.cell_size /= unit;
     options.surface_distance /= unit;
+    const Index bodies = n_bodies(surface.surface);
+    const Index most_nodes = most_more_nodes * options.n_nodes;
     Solid solid;
-    try {
-        solid = without_flakes(refined_solid(surface, options), flake_angle);
-    } catch (const MesherFailure& failure) {
-        throw InvalidArgument(name, "a surface that CGAL's mesher can follow", failure.what());
-    }
-    if (!options.several_pieces) {
-        solid = without_crumbs(solid, crumb_share);
+    for (bool is_torn = true; is_torn;) {
+        try {
+            solid = without_flakes(refined_solid(surface, options), flake_angle);
+        } catch (const MesherFailure& failure) {
+            throw InvalidArgument(name, "a surface that CGAL's mesher can follow", failure.what());
+        }
+        if (!options.several_pieces) {
+            solid = without_crumbs(solid, crumb_share);
+        }
+        is_torn = !options.several_pieces && n_pieces(solid) > bodies && 3 * options.n_nodes / 2 <= most_nodes &&
+                  options.cell_size == 0 && go_on(options.progress, "mesh", 1);
+        options.n_nodes = is_torn ? 3 * options.n_nodes / 2 : options.n_nodes;
     }
     Mesh<3, Scalar, Tet4> mesh{solid.nodes.cast<Scalar>(), solid.cells};
-    check_result(mesh, options, n_bodies(surface.surface));
+    check_result(mesh, options, bodies);
     mesh.nodes *= static_cast<Scalar>(unit);
     return mesh;
 }
