@@ -100,7 +100,7 @@ TEST_CASE("islands in holes, several areas and inner segments come out as drawn"
     CHECK(contains(message([&] { (void)cgal::triangulate<double>(island, {.cell_size = 1}); }),
                    "expected an outline of one piece (several_pieces accepts more), found 2 pieces"));
     CHECK(relative(area(cgal::triangulate<double>(island, {.cell_size = 1, .several_pieces = true})), 81. - 49 + 9,
-                   41.) < 1e-12);
+                   41.) < 1e-11); // the mesher's coordinates are multiples of 2^-40 of the extent
     const auto neighbours =
         folder.file("two.wkt", "POLYGON ((0 0, 1 0, 1 1, 0 1, 0 0))\nPOLYGON ((1 0, 2 0, 2 1, 1 1, 1 0))\n");
     const auto mesh = cgal::triangulate<double>(neighbours, {.cell_size = 0.3});
