@@ -106,7 +106,9 @@ void write_shown_motion(io::OutputGroup& outputs, const std::filesystem::path& f
             io::write_motion(outputs, folder / name, excerpt(motion, 0, frames), cells, &positions);
         }
     };
-    write("motion.h5", reference, topology, fitted.positions);
+    auto returned = topology; // with the springs of the network that is returned
+    returned.springs = calibration.best().network.springs;
+    write("motion.h5", reference, returned, fitted.positions);
     if (fine) {
         const auto& [surface, nodes] = fine->surface;
         write("surface.h5", motion_at(fine->held_out.motions.front(), nodes), io::motion_topology(surface),

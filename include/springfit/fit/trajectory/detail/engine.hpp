@@ -39,6 +39,24 @@ inline void set_curvature(Values<double> curvature, double lambda, TrajectoryRep
     report.curvature = std::move(curvature);
 }
 
+/// Moves `point` to given values, one per unknown, within the bounds, and fills the start of a report. False where none
+/// are given or they cannot be simulated.
+template <int Dim>
+[[nodiscard]] bool move_to_given(const TrajectoryProblem<Dim>& problem, const Values<double>& start,
+                                 TrajectoryPoint<Dim>& point, Values<double>& gradient, TrajectoryReport& report) {
+    require(start.size() == 0 || start.size() == problem.n_unknowns(), "start",
+            text(problem.n_unknowns(), " values, one per unknown"), start.size());
+    const auto& parameters = problem.parameters();
+    if (start.size() == 0 || !point.move_to(start.cwiseMax(parameters.lower()).cwiseMin(parameters.upper())) ||
+        !point.gradient(gradient)) {
+        return false;
+    }
+    report.theta = point.theta();
+    report.objective_start = point.value();
+    report.misfit_start = point.misfit();
+    return true;
+}
+
 /// Moves `point` to the prior, or to 2, 4 or 8 times its stiffness where the prior fails or that halves J, within the
 /// bounds, and fills the start of a report. False where none of them can be simulated. `trial` is working memory.
 template <int Dim>

@@ -167,18 +167,10 @@ TrajectoryReport gauss_newton(const TrajectoryProblem<Dim>& problem, const Gauss
     auto point = std::make_unique<TrajectoryPoint<Dim>>(problem);
     auto trial = std::make_unique<TrajectoryPoint<Dim>>(problem);
     Values<double> gradient = Values<double>::Zero(problem.n_unknowns());
-    require(options.start.size() == 0 || options.start.size() == problem.n_unknowns(), "start",
-            text(problem.n_unknowns(), " values, one per unknown"), options.start.size());
-    const bool is_warm = options.start.size() > 0 && point->move_to(options.start.cwiseMax(lower).cwiseMin(upper)) &&
-                         point->gradient(gradient);
-    if (is_warm) {
-        report.theta = point->theta();
-        report.objective_start = point->value();
-        report.misfit_start = point->misfit();
-    } else if (!detail::move_to_start(problem, lower, upper, point, trial, gradient, report)) {
+    if (!detail::move_to_given(problem, options.start, *point, gradient, report) &&
+        !detail::move_to_start(problem, lower, upper, point, trial, gradient, report)) {
         return report;
     }
-    report.status = Status::iteration_limit;
 
     double mu = 0;
     detail::SmallGains small_gains(options.tolerance);
@@ -191,11 +183,9 @@ TrajectoryReport gauss_newton(const TrajectoryProblem<Dim>& problem, const Gauss
             matrix.make(*point, std::move(active));
             fresh = false;
         }
-        if (report.gradient_max <= 1e-14 || small_gains.enough()) {
-            report.status = Status::converged;
-            break;
-        }
-        if (report.iterations >= options.max_iterations) {
+        const bool is_done = report.gradient_max <= 1e-14 || small_gains.enough();
+        if (is_done || report.iterations >= options.max_iterations) {
+            report.status = is_done ? Status::converged : Status::iteration_limit;
             break;
         }
         bool goes_on = true;
@@ -204,10 +194,7 @@ TrajectoryReport gauss_newton(const TrajectoryProblem<Dim>& problem, const Gauss
                                        (report.iterations + part) / std::max(1, options.max_iterations));
             return goes_on;
         };
-        Values<double> step;
-        if (ask(0)) {
-            step = matrix.step(*point, gradient, mu, ask);
-        }
+        Values<double> step = ask(0) ? matrix.step(*point, gradient, mu, ask) : Values<double>();
         if (!goes_on) {
             report.status = Status::interrupted;
             break;
