@@ -8,17 +8,17 @@ using namespace springfit;
 
 namespace {
 
-/// The motion of a network, damped by 5 % of critical, under a weight that grows over half of its slowest period, over
-/// two of them.
+/// The motion of a network, damped by 5 % of critical, under a weight over two of its slowest periods: it grows over
+/// half of one, or is there at once.
 template <int Dim>
-Motion<Dim, double> falling(SpringNetwork<Dim, double> network, double aside) {
+Motion<Dim, double> falling(SpringNetwork<Dim, double> network, double aside, bool at_once = false) {
     Scenario<Dim, double> scenario;
     scenario.clamps = {{test::small_specimen<Dim>().clamps.front().nodes, {}}};
     const double omega = lowest_frequency(network, scenario.clamps.front().nodes).omega;
     const double period = 2 * std::numbers::pi / omega;
     Vector<Dim, double> g = Vector<Dim, double>::Constant(-0.5);
     g(0) = aside;
-    scenario.gravity.push_back({g, ramp_and_release(period / 2, period)});
+    scenario.gravity.push_back({g, at_once ? Amplitude<double>{} : ramp_and_release(period / 2, period)});
     network.damping = stiffness_proportional_damping(network, 2 * 0.05 / omega);
     return record(network, scenario, {.dt = period / 40, .frames = 80}).motion;
 }
@@ -143,6 +143,26 @@ TEST_CASE("the damping of a recording may be told, and the time step's error is 
     CHECK(result.best().steps_per_frame >= 1);
     options.damping_ratio = 1;
     CHECK_THROWS_AS((void)calibrate(test::even(truth), split_motions<2, double>(recorded), options), InvalidArgument);
+}
+
+TEST_CASE_TEMPLATE("the damping of a recording is found with its stiffness, from where its decay says", T,
+                   test::Space<2, double>, test::Space<3, double>) {
+    constexpr int dim = T::dimension;
+    const auto truth = test::hidden_network<dim>();
+    const double omega = lowest_frequency(truth, test::small_specimen<dim>().clamps.front().nodes).omega;
+    const double beta = 2 * 0.05 / omega;
+    for (const bool at_once : {false, true}) {
+        CAPTURE(at_once);
+        const std::vector<Motion<dim, double>> recorded{falling(truth, 1, at_once), falling(truth, 0.2, at_once),
+                                                        falling(truth, -0.6, at_once)};
+        const auto principal = detail::principal_motion<dim>(recorded, truth.mass);
+        CHECK(principal.c / principal.omega_squared > beta / 3);
+        CHECK(principal.c / principal.omega_squared < beta * 3);
+        auto options = matching();
+        const auto result = calibrate(test::even(truth), split_motions<dim, double>(recorded), options);
+        CHECK(test::relative(result.cases.stiffness_damping, beta, beta) < 0.05);
+        CHECK(result.best().held_out.error < 0.02);
+    }
 }
 
 TEST_CASE("times in another unit are remarked on, and refused where frames show nothing of the motion") {

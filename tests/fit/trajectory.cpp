@@ -143,7 +143,7 @@ void check_gradient(const TrajectoryProblem<Dim>& problem, unsigned seed) {
     REQUIRE(point.gradient(gradient));
     const double step = 1e-4;
     TrajectoryPoint<Dim> other(problem);
-    for (Index u = 0; u < theta.size(); u += 3) {
+    for (Index u = theta.size() - 1; u >= 0; u -= 3) {
         CAPTURE(u);
         Values<double> moved = theta;
         moved(u) += step;
@@ -186,6 +186,8 @@ TEST_CASE_TEMPLATE("the adjoint gradient is that of finite differences", T, Dime
         options.parameters.damping.fit = false;
         options.parameters.rest_length.fit = false;
         options.parameters.damping_per_stiffness = 0.05;
+        SUBCASE("known") {}
+        SUBCASE("fitted as one value") { options.parameters.fit_damping_per_stiffness = true; }
         options.parameters.stiffness.ties.resize(static_cast<std::size_t>(prior.n_springs()));
         for (std::size_t e = 0; e < options.parameters.stiffness.ties.size(); ++e) {
             options.parameters.stiffness.ties[e] = static_cast<int>(e % 4);
@@ -236,6 +238,46 @@ TEST_CASE_TEMPLATE("products with the Gauss-Newton matrix are those of its dense
         CHECK(entry >= 0);
         CHECK(diagonal(u) >= entry / 2); // 400 probes: 7 % of standard deviation
         CHECK(diagonal(u) <= entry * 2);
+    }
+}
+
+TEST_CASE_TEMPLATE("products of motions in time are those of finite differences, with many steps as with few", T,
+                   Dimension<2>, Dimension<3>) {
+    constexpr int Dim = T::value;
+    Fixture<Dim> fixture(true);
+    auto& network = fixture.network;
+    network.damping = 0.05 * network.stiffness;
+    Random random(12);
+    for (const int steps : {1, 4, 32}) {
+        CAPTURE(steps);
+        TrajectoryOptions options;
+        options.prior_weight = 0;
+        options.steps_per_frame = steps;
+        options.parameters.damping_per_stiffness = 0.05;
+        options.parameters.fit_damping_per_stiffness = true;
+        // Its own motion: J is almost 0 there, and its curvature J' W J alone.
+        const TrajectoryProblem<Dim> problem(network, std::vector{fixture.swing(10, 0.02, 4)}, options);
+        TrajectoryPoint<Dim> truth(problem), other(problem);
+        const Values<double> zero = Values<double>::Zero(problem.n_unknowns());
+        REQUIRE(truth.move_to(zero));
+        Values<double> direction = zero;
+        for (double& value : direction) {
+            value = random(-1, 1);
+        }
+        const double step = 1e-3;
+        REQUIRE(other.move_to(step * direction, &truth));
+        double difference = other.value();
+        REQUIRE(other.move_to(-step * direction, &truth));
+        difference += other.value() - 2 * truth.value();
+        const double expected = difference / (step * step);
+        CHECK(test::relative(direction.dot(truth.product(direction)), expected, expected) < 0.03);
+        const Values<double> diagonal = truth.curvature(200);
+        for (Index u = 0; u < zero.size(); u += 7) {
+            CAPTURE(u);
+            const double entry = truth.product(Values<double>::Unit(zero.size(), u))(u);
+            CHECK(diagonal(u) >= entry / 2);
+            CHECK(diagonal(u) <= entry * 2);
+        }
     }
 }
 

@@ -29,7 +29,7 @@ struct RecordEquilibriaOptions {
 ///     auto cases = record_equilibria(reference, specimen, random_load_cases(specimen, {.training = 60}));
 ///
 /// Loads under which the reference finds no equilibrium, or goes more than one and a half times as far as its linear
-/// response (it buckles, or topples), are halved, up to four times. Cases are sorted by their roles; those that find no
+/// response (it buckles, or topples), are halved, up to six times. Cases are sorted by their roles; those that find no
 /// equilibrium even then are left out, with a warning, and there may be none.
 /// Throws InvalidArgument for a specimen without edges, for a strain out of range, and where the reference does.
 template <int Dim, std::floating_point Scalar>

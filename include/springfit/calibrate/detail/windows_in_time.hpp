@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <Eigen/QR>
+
 #include <springfit/core/stage.hpp>
 #include <springfit/fit/trajectory/gauss_newton.hpp>
 #include <springfit/network/damping.hpp>
@@ -45,71 +47,103 @@ double window_misfit(const SpringNetwork<Dim, double>& network, const std::vecto
     return gauss_newton(problem, {.max_iterations = 0}).misfit_start;
 }
 
-/// The number in [low, high], both positive, with the least value, and that value, by golden sections of its logarithm.
-template <class Function>
-std::pair<double, double> least_value(double low, double high, const Function& function) {
-    constexpr double golden = 0.6180339887498949;
-    low = std::log(low);
-    high = std::log(high);
-    double a = high - golden * (high - low), b = low + golden * (high - low);
-    double at_a = function(std::exp(a)), at_b = function(std::exp(b));
-    for (int section = 0; section < 10; ++section) {
-        if (at_a < at_b) {
-            high = b;
-            b = a;
-            at_b = at_a;
-            a = high - golden * (high - low);
-            at_a = function(std::exp(a));
-        } else {
-            low = a;
-            a = b;
-            at_a = at_b;
-            b = low + golden * (high - low);
-            at_b = function(std::exp(b));
+/// Coordinate of motions along their principal motion phi, u = x - x_rest: q = phi' M u, and its equation
+/// q'' = -omega^2 q - c q' + gamma phi' f, by least squares over all frames.
+struct PrincipalMotion {
+    double omega_squared = 0;
+    double c = 0;
+};
+
+/// The equation of the principal motion; phi is where iterations u (u' M phi) over all frames lead from the largest u.
+template <int Dim>
+PrincipalMotion principal_motion(const std::vector<Motion<Dim, double>>& motions, const Values<double>& mass) {
+    constexpr int n_iterations = 20;
+    const Values<double> m = mass.transpose().replicate(Dim, 1).reshaped();
+    const auto moved = [](const auto& motion, std::size_t t) -> Values<double> {
+        return (motion.positions[t] - motion.rest_positions).reshaped();
+    };
+    Values<double> phi = Values<double>::Zero(m.size());
+    for (const auto& motion : motions) {
+        for (std::size_t t = 0; t < motion.positions.size(); ++t) {
+            const Values<double> u = moved(motion, t);
+            phi = u.squaredNorm() > phi.squaredNorm() ? u : phi;
         }
     }
-    return at_a < at_b ? std::pair{std::exp(a), at_a} : std::pair{std::exp(b), at_b};
+    for (int iteration = 0; iteration < n_iterations; ++iteration) {
+        const Values<double> along = m.cwiseProduct(phi);
+        phi.setZero();
+        for (const auto& motion : motions) {
+            for (std::size_t t = 0; t < motion.positions.size(); ++t) {
+                const Values<double> u = moved(motion, t);
+                phi += u.dot(along) * u;
+            }
+        }
+        phi /= std::sqrt(phi.dot(m.cwiseProduct(phi)));
+    }
+    const Values<double> along = m.cwiseProduct(phi);
+    Index n_frames = 0;
+    for (const auto& motion : motions) {
+        n_frames += motion.n_frames();
+    }
+    DenseMatrix<double> terms(n_frames, 3);
+    Values<double> accelerations(n_frames);
+    Index row = 0;
+    for (const auto& motion : motions) {
+        for (std::size_t t = 0; t < motion.positions.size(); ++t, ++row) {
+            terms.row(row) << moved(motion, t).dot(along), along.dot(motion.velocities[t].reshaped()),
+                phi.dot(motion.external_forces[t].reshaped());
+            accelerations(row) = along.dot(motion.accelerations[t].reshaped());
+        }
+    }
+    const Values<double> found = terms.colPivHouseholderQr().solve(accelerations);
+    return found.allFinite() ? PrincipalMotion{-found(0), -found(1)} : PrincipalMotion{};
 }
 
 /// The damping that was found, and where matching may go on from.
 struct FoundDamping {
     double beta = 0;      ///< of D = beta K, s
-    Values<double> theta; ///< of matching without damping; empty where that failed
+    Values<double> theta; ///< of the matching that found it; empty where that failed
 };
 
-/// The beta of D = beta K that is best in the windows of at most two motions, stiffness being matched without damping
-/// first; 0 where none gains a tenth. (Whole motions out of phase would call for damping.) With a `ratio` of critical
-/// it is that of the network's slowest motion.
+/// The beta of D = beta K, fitted with the stiffness in the windows of at most two motions, from where the decay of
+/// their principal motion says; 0 where the windows do not call for it. (Whole motions out of phase would.) With a
+/// `ratio` of critical it is that of the network's slowest motion.
 template <int Dim>
 FoundDamping find_damping(SpringNetwork<Dim, double> network, const std::vector<Motion<Dim, double>>& all,
                           TrajectoryOptions how, const std::optional<double>& ratio, const ProgressCallback& progress) {
+    constexpr double least = 0.001, most = 0.5; // parts of critical
     std::vector<Motion<Dim, double>> motions;
     std::copy_if(all.begin(), all.end(), std::back_inserter(motions),
                  [&](const auto& motion) { return motion.n_frames() > 1 && motions.size() < 2; });
-    how.parameters.damping_per_stiffness = 0;
-    network.damping.setZero();
-    const TrajectoryProblem<Dim> problem(network, motions, how);
+    const PrincipalMotion principal = principal_motion(motions, network.mass);
+    const double omega = principal.omega_squared > 0 ? std::sqrt(principal.omega_squared)
+                                                     : lowest_frequency(network, motions.front().clamped).omega;
     FoundDamping found;
-    const auto report = gauss_newton(problem, {.max_iterations = 8, .tolerance = 0.02, .progress = progress});
-    if (usable(report.status)) {
-        apply(problem, report, network);
-        found.theta = report.theta;
-    }
-    const double omega = lowest_frequency(network, motions.front().clamped).omega;
     if (!(omega > 0)) {
         return found;
     }
-    if (ratio) {
-        found.beta = 2 * *ratio / omega;
-        return found;
+    auto& fitted = how.parameters;
+    fitted.damping_per_stiffness = 2 * std::clamp(principal.c / (2 * omega), least, most) / omega;
+    fitted.fit_damping_per_stiffness = true;
+    network.damping = stiffness_proportional_damping(network, fitted.damping_per_stiffness);
+    const TrajectoryProblem<Dim> problem(network, motions, how);
+    const auto report = gauss_newton(problem, {.max_iterations = 8, .tolerance = 0.02, .progress = progress});
+    if (usable(report.status)) {
+        apply(problem, report, network);
+        found.beta = problem.parameters().damping_per_stiffness(report.theta);
+        found.theta = report.theta.head(report.theta.size() - 1); // but for beta's
     }
-    const auto misfit = [&](double zeta) {
-        how.parameters.damping_per_stiffness = 2 * zeta / omega;
-        network.damping = stiffness_proportional_damping(network, 2 * zeta / omega);
-        return window_misfit(network, motions, how);
-    };
-    const auto [zeta, least] = least_value(0.001, 0.5, misfit);
-    found.beta = least < 0.9 * misfit(0) ? 2 * zeta / omega : 0.;
+    const double slowest = lowest_frequency(network, motions.front().clamped).omega;
+    if (ratio) {
+        found.beta = slowest > 0 ? 2 * *ratio / slowest : 0.;
+    } else if (found.beta > 0) {
+        fitted.damping_per_stiffness = 0;
+        fitted.fit_damping_per_stiffness = false;
+        network.damping.setZero();
+        const double undamped = window_misfit(network, motions, how);
+        const bool is_needed = found.beta * slowest / 2 > least && report.misfit < 0.9 * undamped;
+        found.beta = is_needed ? found.beta : 0.;
+    }
     return found;
 }
 

@@ -10,10 +10,11 @@ namespace detail {
 /// A body whose largest displacement is beyond so many times that of its linear response has buckled or toppled.
 inline constexpr double buckled = 1.5;
 /// How often the loads of such a case are halved at most.
-inline constexpr int most_halvings = 4;
+inline constexpr int most_halvings = 6;
 
 /// Halves the loads of cases in which the reference buckles, or finds no equilibrium, and records them again, until
-/// they do not: beyond, a case is about that fall alone, and its strain is far above what was asked for.
+/// they do not: beyond, a case is about that fall alone, and its strain is far above what was asked for. A case that
+/// buckles to the last is `failed`.
 /// `scenarios` are scaled by `factors`, per unit of which `responses` are.
 template <int Dim, std::floating_point Scalar>
 void record_unbuckled(const CaseRecorder<Dim, Scalar>& reference, const std::vector<Points<Dim, Scalar>>& responses,
@@ -47,6 +48,9 @@ void record_unbuckled(const CaseRecorder<Dim, Scalar>& reference, const std::vec
         for (std::size_t a = 0; a < again.size(); ++a) {
             recordings[again[a]] = std::move(recorded[a]);
         }
+    }
+    for (std::size_t c = 0; c < scenarios.size(); ++c) {
+        recordings[c].status = has_buckled(c) ? Status::failed : recordings[c].status;
     }
 }
 
@@ -93,7 +97,8 @@ record_equilibria(const CaseRecorder<Dim, Scalar>& reference, const Specimen<Dim
             recorded.warnings.push_back(
                 {.code = WarningCode::no_equilibrium,
                  .about = scenarios[c].name,
-                 .message = text("static load case ", scenarios[c].name, ": the reference found no equilibrium"),
+                 .message = text("static load case ", scenarios[c].name,
+                                 ": the reference found no equilibrium, or buckled, however small the load"),
                  .advice = "a smaller strain may help",
                  .values = {{"strain", static_cast<double>(options.strain)}}});
         }

@@ -45,6 +45,7 @@ struct TrajectoryParameterOptions {
     MotionParameterOptions volume{.fit = true}; ///< of networks with cells
     /// beta of Kelvin-Voigt springs, s, >= 0: above 0 damping follows stiffness, c_e = beta k_e, and is not fitted.
     double damping_per_stiffness = 0;
+    bool fit_damping_per_stiffness = false; ///< beta > 0 is where one more unknown starts from: beta exp(theta)
     /// A spring whose prior stiffness (or damping) is below this part of the mean starts from that: the logarithm needs
     /// a positive value. In (0, 1].
     double least_prior = 0.02;
@@ -92,6 +93,8 @@ public:
         require(m_beta >= 0 && std::isfinite(m_beta), "damping_per_stiffness", "a time not below 0", m_beta);
         require(m_beta == 0 || !options.damping.fit, "damping_per_stiffness", "damping that is not fitted besides",
                 "both");
+        require(m_beta > 0 || !options.fit_damping_per_stiffness, "damping_per_stiffness",
+                "a positive time, where it is fitted", m_beta);
         if (options.stiffness.fit) {
             raise(m_prior.stiffness, options.least_prior, "stiffness");
         }
@@ -110,6 +113,9 @@ public:
         number(MotionParameter::damping, options.damping, m_prior.n_springs());
         number(MotionParameter::rest_length, options.rest_length, m_prior.n_springs());
         number(MotionParameter::volume, options.volume, m_prior.n_cells());
+        if (options.fit_damping_per_stiffness) {
+            m_unknown_beta = static_cast<int>(m_n_unknowns++);
+        }
         require(n_unknowns() > 0, "parameters", "at least one unknown", "none");
         set_bounds(MotionParameter::stiffness, options.stiffness);
         set_bounds(MotionParameter::damping, options.damping);
@@ -141,9 +147,14 @@ public:
             }
         }
         if (m_beta > 0) {
-            network.damping = m_beta * network.stiffness;
+            network.damping = damping_per_stiffness(theta) * network.stiffness;
         }
         return network;
+    }
+
+    /// beta of c_e = beta k_e at theta, s; 0 where damping does not follow stiffness.
+    [[nodiscard]] double damping_per_stiffness(const Values<double>& theta) const {
+        return m_unknown_beta < 0 ? m_beta : m_beta * std::exp(theta(m_unknown_beta));
     }
 
     /// The change of the network's values along `direction` `[n_unknowns]` at the network of theta.
@@ -158,17 +169,23 @@ public:
             }
         }
         if (m_beta > 0) {
-            change.damping = m_beta * change.stiffness;
+            change.damping = beta_of(network) * change.stiffness;
+        }
+        if (m_unknown_beta >= 0) {
+            change.damping += direction(m_unknown_beta) * network.damping;
         }
         return change;
     }
 
     /// The derivative by theta `[n_unknowns]` from that by the network's values: the transpose of `change`.
     [[nodiscard]] Values<double> pull_back(const Network& network, NetworkValues derivative) const {
-        if (m_beta > 0) {
-            derivative.stiffness += m_beta * derivative.damping;
-        }
         Values<double> result = Values<double>::Zero(n_unknowns());
+        if (m_beta > 0) {
+            derivative.stiffness += beta_of(network) * derivative.damping;
+        }
+        if (m_unknown_beta >= 0) {
+            result(m_unknown_beta) = network.damping.dot(derivative.damping);
+        }
         for (MotionParameter kind : kinds) {
             const Values<double>& values = values_of(kind, derivative);
             for (Index item = 0; item < values.size(); ++item) {
@@ -209,6 +226,11 @@ public:
                                                           MotionParameter::rest_length, MotionParameter::volume};
 
 private:
+    /// beta of a network that `network` returned.
+    [[nodiscard]] double beta_of(const Network& network) const {
+        return m_unknown_beta < 0 ? m_beta : network.damping.sum() / network.stiffness.sum();
+    }
+
     [[nodiscard]] const std::vector<int>& of(MotionParameter kind) const {
         return m_unknown[static_cast<std::size_t>(kind)];
     }
@@ -292,6 +314,7 @@ private:
     Network m_prior;
     double m_rest_length_scale = 1;
     double m_beta = 0;
+    int m_unknown_beta = -1;
     double m_shear_modulus = 1;
     std::array<std::vector<int>, 4> m_unknown;
     Index m_n_unknowns = 0;

@@ -28,7 +28,7 @@ template <int Dim>
 void WindowSimulation<Dim>::add_product(WindowTape<Dim>& tape, const NetworkValues& change,
                                         NetworkValues& derivative) const {
     const auto solve_step = [&](const ColumnBlock& y, const ColumnBlock& x, const ColumnBlock& right, ColumnBlock& z) {
-        (void)solve(m_system.preconditioner(y), y, x, right, loosely, z);
+        (void)solve(m_system.preconditioner(y), y, x, right, loosely_in_time(), z);
         return true;
     };
     if (m_windows.frames == 0) {
@@ -63,8 +63,8 @@ void WindowSimulation<Dim>::add_probe(WindowTape<Dim>& tape, Draw&& draw, Networ
         hide_unobserved(frame, z);
         return z;
     };
-    const auto solve = [&](const ColumnBlock&, const ColumnBlock&, const ColumnBlock& right, ColumnBlock& z) {
-        m_system.factor.solve(right, z);
+    const auto solve_step = [&](const ColumnBlock& y, const ColumnBlock& x, const ColumnBlock& right, ColumnBlock& z) {
+        (void)solve(m_system.preconditioner(y), y, x, right, loosely_in_time(), z);
         return true;
     };
     if (m_windows.frames == 0) {
@@ -75,7 +75,7 @@ void WindowSimulation<Dim>::add_probe(WindowTape<Dim>& tape, Draw&& draw, Networ
         return;
     }
     (void)backwards(
-        tape, [&](const ColumnBlock& state, Index frame) { return random(state, frame); }, solve, false, derivative);
+        tape, [&](const ColumnBlock& state, Index frame) { return random(state, frame); }, solve_step, false, derivative);
 }
 
 /// The change of the positions at each frame along a change of the network's values.
@@ -98,7 +98,7 @@ std::vector<ColumnBlock> WindowSimulation<Dim>::forwards(WindowTape<Dim>& tape, 
                 add_damping_parameter_forces<Dim>(m_system.network, change, x, m_system.damping * (y - x), force);
             }
             m_system.hold(force);
-            (void)solve(m_system.preconditioner(y), y, x, force, loosely, dy);
+            (void)solve(m_system.preconditioner(y), y, x, force, loosely_in_time(), dy);
             finish_step(dy, dx, dv);
             if (const Index step = segment * m_interval + s + 1; step % m_rule.steps_per_frame == 0) {
                 frames.push_back(dx);

@@ -216,7 +216,14 @@ private:
         int max_iterations;
     };
     static constexpr Precision exactly{1e-10, 300}; ///< for gradients
-    static constexpr Precision loosely{1e-2, 20};   ///< for products with a Gauss-Newton matrix
+    static constexpr Precision loosely{1e-2, 20};   ///< for products with a Gauss-Newton matrix, of static cases
+
+    /// For products of motions in time: what n steps add up differs from step to step by a part of about 1 / n^2, and
+    /// is to be known to a hundredth.
+    [[nodiscard]] Precision loosely_in_time() const {
+        const auto n = static_cast<double>(m_n_steps);
+        return {std::max(1e-2 / (n * n), exactly.tolerance), exactly.max_iterations};
+    }
 
     [[nodiscard]] bool solve(const CorotatedBlockPreconditioner<Dim>& factor, const ColumnBlock& y,
                              const ColumnBlock& old, const ColumnBlock& right, const Precision& precision,
