@@ -17,6 +17,11 @@ Eigen::ArrayXd column_dots(const Block& a, const Block& b) {
 }
 
 template <class Block>
+Eigen::ArrayXd column_norms(const Block& a) {
+    return column_dots(a, a).sqrt();
+}
+
+template <class Block>
 Eigen::ArrayXd column_maxima(const Block& a) {
     return a.cwiseAbs().colwise().maxCoeff().transpose().array();
 }
@@ -72,6 +77,13 @@ struct ImplicitSystem {
         }
     }
 
+    /// block = (w M)^-1 block, of a step.
+    void divide_by_inertia(ColumnBlock& block) const {
+        for (Index i = 0; i < network.n_nodes(); ++i) {
+            block.middleRows<Dim>(Dim * i) /= inertia * network.mass(i);
+        }
+    }
+
     /// product = (w M + K(y) + d D(old)) direction, for a direction that leaves clamped nodes where they are.
     void multiply(const ColumnBlock& y, const ColumnBlock& old, HessianForm curvature, const ColumnBlock& direction,
                   ColumnBlock& product) const {
@@ -124,10 +136,9 @@ struct ImplicitSystem {
 template <class Factor, class Multiply>
 class ColumnCg {
 public:
-    ColumnCg(const Factor& factor, const Multiply& multiply, const ColumnBlock& right, double tolerance,
+    ColumnCg(const Factor& factor, const Multiply& multiply, const ColumnBlock& right, const Eigen::ArrayXd& goal,
              ColumnBlock& solution)
-        : m_factor(factor), m_multiply(multiply), m_goal(tolerance * column_dots(right, right).sqrt()),
-          m_solution(solution), m_residual(right), m_active(static_cast<std::size_t>(right.cols()), 1) {
+        : m_factor(factor), m_multiply(multiply), m_goal(goal), m_solution(solution), m_residual(right), m_active(static_cast<std::size_t>(right.cols()), 1) {
         m_solution.setZero(right.rows(), right.cols());
     }
 
@@ -209,12 +220,12 @@ private:
     bool m_has_moved = false;
 };
 
-/// Conjugate gradients on every column at once, until |residual| <= tolerance |right| in each. False where some column
+/// Conjugate gradients on every column at once, until |residual| <= goal in each. False where some column
 /// met negative curvature or did not converge; its solution is then the iterate before, a direction of descent.
 template <class Factor, class Multiply>
 bool block_conjugate_gradients(const Factor& factor, const Multiply& multiply, const ColumnBlock& right,
-                               double tolerance, int max_iterations, ColumnBlock& solution) {
-    ColumnCg<Factor, Multiply> system(factor, multiply, right, tolerance, solution);
+                               const Eigen::ArrayXd& goal, int max_iterations, ColumnBlock& solution) {
+    ColumnCg<Factor, Multiply> system(factor, multiply, right, goal, solution);
     Eigen::ArrayXd rz = system.start();
     for (int iteration = 0; !system.is_solved(); ++iteration) {
         if (iteration == max_iterations) {
@@ -286,7 +297,7 @@ bool solve_implicit(const ImplicitSystem<Dim>& system, const ColumnBlock& target
         const auto newton_step = [&](HessianForm curvature) {
             return block_conjugate_gradients(
                 factor, [&](const ColumnBlock& p, ColumnBlock& q) { system.multiply(y, old, curvature, p, q); }, force,
-                1e-2, 100, direction);
+                1e-2 * column_norms(force), 100, direction);
         };
         // Far from balance, compressed springs make the exact curvature so indefinite that its truncated step is poor.
         near = near || !any_above(unbalanced, 1e-2, largest);

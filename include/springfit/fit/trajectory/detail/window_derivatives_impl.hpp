@@ -27,10 +27,6 @@ bool WindowSimulation<Dim>::add_gradient(WindowTape<Dim>& tape, NetworkValues& d
 template <int Dim>
 void WindowSimulation<Dim>::add_product(WindowTape<Dim>& tape, const NetworkValues& change,
                                         NetworkValues& derivative) const {
-    const auto solve_step = [&](const ColumnBlock& y, const ColumnBlock& x, const ColumnBlock& right, ColumnBlock& z) {
-        (void)solve(m_system.preconditioner(y), y, x, right, loosely_in_time(), z);
-        return true;
-    };
     if (m_windows.frames == 0) {
         const ColumnBlock& y = tape.positions.front();
         ColumnBlock force = ColumnBlock::Zero(y.rows(), y.cols());
@@ -46,7 +42,11 @@ void WindowSimulation<Dim>::add_product(WindowTape<Dim>& tape, const NetworkValu
     (void)backwards(
         tape,
         [&](const ColumnBlock&, Index frame) { return weighted(moved[static_cast<std::size_t>(frame - 1)], frame); },
-        solve_step, false, derivative);
+        [&](const ColumnBlock& y, const ColumnBlock& x, const ColumnBlock& right, ColumnBlock& z) {
+            solve_step(y, x, right, by_step, z);
+            return true;
+        },
+        false, derivative);
 }
 
 template <int Dim>
@@ -63,10 +63,6 @@ void WindowSimulation<Dim>::add_probe(WindowTape<Dim>& tape, Draw&& draw, Networ
         hide_unobserved(frame, z);
         return z;
     };
-    const auto solve_step = [&](const ColumnBlock& y, const ColumnBlock& x, const ColumnBlock& right, ColumnBlock& z) {
-        (void)solve(m_system.preconditioner(y), y, x, right, loosely_in_time(), z);
-        return true;
-    };
     if (m_windows.frames == 0) {
         const ColumnBlock& y = tape.positions.front();
         ColumnBlock z;
@@ -75,7 +71,12 @@ void WindowSimulation<Dim>::add_probe(WindowTape<Dim>& tape, Draw&& draw, Networ
         return;
     }
     (void)backwards(
-        tape, [&](const ColumnBlock& state, Index frame) { return random(state, frame); }, solve_step, false, derivative);
+        tape, [&](const ColumnBlock& state, Index frame) { return random(state, frame); },
+        [&](const ColumnBlock& y, const ColumnBlock& x, const ColumnBlock& right, ColumnBlock& z) {
+            solve_step(y, x, right, roughly, z);
+            return true;
+        },
+        false, derivative);
 }
 
 /// The change of the positions at each frame along a change of the network's values.
@@ -98,7 +99,7 @@ std::vector<ColumnBlock> WindowSimulation<Dim>::forwards(WindowTape<Dim>& tape, 
                 add_damping_parameter_forces<Dim>(m_system.network, change, x, m_system.damping * (y - x), force);
             }
             m_system.hold(force);
-            (void)solve(m_system.preconditioner(y), y, x, force, loosely_in_time(), dy);
+            solve_step(y, x, force, by_step, dy);
             finish_step(dy, dx, dv);
             if (const Index step = segment * m_interval + s + 1; step % m_rule.steps_per_frame == 0) {
                 frames.push_back(dx);

@@ -216,21 +216,37 @@ private:
         int max_iterations;
     };
     static constexpr Precision exactly{1e-10, 300}; ///< for gradients
-    static constexpr Precision loosely{1e-2, 20};   ///< for products with a Gauss-Newton matrix, of static cases
-
-    /// For products of motions in time: what n steps add up differs from step to step by a part of about 1 / n^2, and
-    /// is to be known to a hundredth.
-    [[nodiscard]] Precision loosely_in_time() const {
-        const auto n = static_cast<double>(m_n_steps);
-        return {std::max(1e-2 / (n * n), exactly.tolerance), exactly.max_iterations};
-    }
+    static constexpr Precision loosely{1e-2, 20};   ///< for products of static cases with a Gauss-Newton matrix
+    static constexpr Precision by_step{1e-3, 40};   ///< for those of motions in time
+    static constexpr Precision roughly{1e-1, 20};   ///< for estimates of its diagonal
 
     [[nodiscard]] bool solve(const CorotatedBlockPreconditioner<Dim>& factor, const ColumnBlock& y,
                              const ColumnBlock& old, const ColumnBlock& right, const Precision& precision,
                              ColumnBlock& z) const {
+        return solve_to(factor, y, old, right, precision.tolerance * column_norms(right), precision.max_iterations, z);
+    }
+
+    [[nodiscard]] bool solve_to(const CorotatedBlockPreconditioner<Dim>& factor, const ColumnBlock& y,
+                                const ColumnBlock& old, const ColumnBlock& right, const Eigen::ArrayXd& goal,
+                                int max_iterations, ColumnBlock& z) const {
         return block_conjugate_gradients(
             factor, [&](const ColumnBlock& p, ColumnBlock& q) { m_system.multiply(y, old, HessianForm::exact, p, q); },
-            right, precision.tolerance, precision.max_iterations, z);
+            right, goal, max_iterations, z);
+    }
+
+    /// Solves a step's system for what is left of z beside that of free flight, p^2 M^-1 right, p = alpha h, to a part
+    /// of the lesser of the two right-hand sides: what steps add up is as accurate then as a step is, however many they
+    /// are. (Of z as a whole the forces of a short step are a part that a loose solve would not see.)
+    void solve_step(const ColumnBlock& y, const ColumnBlock& old, const ColumnBlock& right, const Precision& precision,
+                    ColumnBlock& z) const {
+        z = right;
+        m_system.divide_by_inertia(z);
+        ColumnBlock left, rest;
+        m_system.multiply(y, old, HessianForm::exact, z, left);
+        left = right - left;
+        const Eigen::ArrayXd goal = precision.tolerance * column_norms(left).min(column_norms(right));
+        (void)solve_to(m_system.preconditioner(y), y, old, left, goal, precision.max_iterations, rest);
+        z += rest;
     }
 
     [[nodiscard]] std::vector<ColumnBlock> forwards(WindowTape<Dim>& tape, const NetworkValues& change) const;
