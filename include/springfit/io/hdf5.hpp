@@ -16,26 +16,35 @@ namespace springfit::io::hdf5 {
 
 /// Room on the disk for a file that is being written.
 ///
-/// HDF5 1.10 cannot stand a failed write: the program crashes when it ends. So room is made, or found missing, before
-/// HDF5 writes; what it keeps in memory always has its place already.
+/// HDF5 1.10 cannot stand a failed write: it keeps what it could not write, tries again when the program ends, and
+/// crashes there. So room is made, or found missing, before HDF5 writes; and a file that a write failed in, or that is
+/// not to be completed, is led to nowhere before HDF5 closes it (`abandon`).
 class ReservedSpace {
 public:
     ReservedSpace(const std::filesystem::path& path, std::string shown);
     /// Makes room for `bytes` more than HDF5 has given out so far in the file of `object`. Throws FileError on a full
     /// disk.
     void make(hid_t object, hsize_t bytes);
-    /// Gives back what was not used of a file that HDF5 has closed.
+    /// Gives back what was not used of a file that HDF5 has flushed.
     void trim(hsize_t size);
+    /// Whatever HDF5 writes to the file of `object` from now on goes nowhere, and cannot fail.
+    void abandon(hid_t object) noexcept;
 
 private:
     io::detail::Descriptor m_descriptor;
     std::string m_name;
     hsize_t m_size = 0;
+    bool m_abandoned = false;
 };
 
-/// An open file. Reading converts between number types; text where numbers are expected is refused.
+/// An open file. Reading converts between number types (a number beyond the range of the wanted type becomes the end of
+/// that range); text where numbers are expected is refused.
 class File {
 public:
+    File(File&&) noexcept = default;
+    File& operator=(File&&) noexcept = default;
+    ~File();
+
     /// Truncates the file `path`; errors name `shown`, the file that it is to become.
     [[nodiscard]] static File create(const std::filesystem::path& path, std::string shown);
     [[nodiscard]] static File open(const std::filesystem::path& path);
@@ -44,6 +53,9 @@ public:
 
     [[nodiscard]] const std::string& name() const noexcept { return m_name; }
     [[nodiscard]] bool has(const std::string& dataset) const;
+    /// Empty for a single number. What a file was read for can be allocated by it: a shape that promises more than the
+    /// file holds is refused, as are numbers that are in another file and links to other files, but for those in the
+    /// same folder or below it.
     [[nodiscard]] Shape shape(const std::string& dataset) const;
 
     /// Writes a whole array.
@@ -54,9 +66,10 @@ public:
     template <class T>
     void read(const std::string& dataset, T* values, const Shape& expected) const;
 
-    /// Reads one entry of the slowest axis of an array, `row < shape[0]`.
-    template <class T>
-    void read_row(const std::string& dataset, hsize_t row, T* values) const;
+    /// Reads an array of this shape and calls `take(row, values)` for each entry of its slowest axis, in order, with a
+    /// `const T*`. In memory is no more of it than its chunks ask for.
+    template <class T, class Take>
+    void read_rows(const std::string& dataset, const Shape& expected, const Take& take) const;
 
     /// Makes `view` show one row `[n x m]` of a dataset `[rows x n x m]` in this file, without a copy, with columns of
     /// zeros added up to `columns`.
@@ -90,6 +103,9 @@ class Series {
 public:
     /// `row` is the shape of one row; empty for one number.
     Series(const File& file, std::string dataset, Shape row);
+    Series(Series&&) noexcept = default;
+    Series& operator=(Series&&) noexcept = default;
+    ~Series();
 
     template <class T>
     void append(const T* values);

@@ -31,6 +31,12 @@ inline Series::Series(const File& file, std::string dataset, Shape row)
     m_dataset = file.create_dataset(m_name, H5T_IEEE_F64LE, space.get(), properties.get(), access.get());
 }
 
+inline Series::~Series() {
+    if (m_dataset.is_open()) {
+        m_reserved->abandon(m_dataset.get());
+    }
+}
+
 template <class T>
 void Series::append(const T* values) {
     const detail::Quiet quiet;
@@ -61,7 +67,7 @@ void Series::append(const T* values) {
 inline void Series::close() {
     const detail::Quiet quiet;
     m_reserved->make(m_dataset.get(), m_row_bytes);
-    if (!m_dataset.close()) {
+    if (H5Dflush(m_dataset.get()) < 0 || !m_dataset.close()) {
         throw FileError(m_file, text(m_name, ": cannot be written: ", detail::last_error()));
     }
 }
