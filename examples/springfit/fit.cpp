@@ -420,6 +420,7 @@ int fit_dimension(std::optional<AnyMesh> mesh, const std::optional<FineMesh>& fi
 } // namespace
 
 int run_fit(FitOptions options) {
+    require(!options.out.empty(), "--out", "a folder", "an empty name");
     options.inputs = expanded(options.inputs);
     options.input = options.inputs.front();
     options.references = expanded(options.references);

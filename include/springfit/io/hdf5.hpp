@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,38 +13,14 @@
 /// Every error is a FileError that names file and dataset; HDF5 itself prints nothing.
 namespace springfit::io::hdf5 {
 
-/// Room on the disk for a file that is being written.
-///
-/// HDF5 1.10 cannot stand a failed write: it keeps what it could not write, tries again when the program ends, and
-/// crashes there. So room is made, or found missing, before HDF5 writes; and a file that a write failed in, or that is
-/// not to be completed, is led to nowhere before HDF5 closes it (`abandon`).
-class ReservedSpace {
-public:
-    ReservedSpace(const std::filesystem::path& path, std::string shown);
-    /// Makes room for `bytes` more than HDF5 has given out so far in the file of `object`. Throws FileError on a full
-    /// disk.
-    void make(hid_t object, hsize_t bytes);
-    /// Gives back what was not used of a file that HDF5 has flushed.
-    void trim(hsize_t size);
-    /// Whatever HDF5 writes to the file of `object` from now on goes nowhere, and cannot fail.
-    void abandon(hid_t object) noexcept;
-
-private:
-    io::detail::Descriptor m_descriptor;
-    std::string m_name;
-    hsize_t m_size = 0;
-    bool m_abandoned = false;
-};
-
 /// An open file. Reading converts between number types (a number beyond the range of the wanted type becomes the end of
 /// that range); text where numbers are expected is refused.
 class File {
 public:
-    File(File&&) noexcept = default;
-    File& operator=(File&&) noexcept = default;
-    ~File();
-
-    /// Truncates the file `path`; errors name `shown`, the file that it is to become.
+    /// A new file, in memory until `close` writes it to `path`; errors name `shown`, the file that it is to become.
+    ///
+    /// HDF5 1.10 does not write to the disk by itself, since it cannot stand a write that fails: it tries again when the
+    /// program ends, and crashes there.
     [[nodiscard]] static File create(const std::filesystem::path& path, std::string shown);
     [[nodiscard]] static File open(const std::filesystem::path& path);
     /// True where the file exists and is of this format.
@@ -79,22 +54,21 @@ public:
     /// A text attribute, where there is one.
     [[nodiscard]] std::optional<std::string> attribute(const std::string& object, const std::string& attribute) const;
 
-    /// Completes a created file, after all series in it were closed. Throws where that fails.
+    /// Writes a created file to the disk, after all series in it were closed. Throws FileError where that fails.
     void close();
 
     [[noreturn]] void refuse(const std::string& dataset, std::string_view problem) const;
 
 private:
     friend class Series;
-    File(Handle file, std::shared_ptr<ReservedSpace> room, std::string name)
-        : m_file(std::move(file)), m_reserved(std::move(room)), m_name(std::move(name)) {}
-    void make_room(hsize_t bytes) const { m_reserved->make(m_file.get(), bytes); }
+    File(Handle file, std::filesystem::path created, std::string name)
+        : m_file(std::move(file)), m_created(std::move(created)), m_name(std::move(name)) {}
     [[nodiscard]] Handle open_dataset(const std::string& dataset) const;
     [[nodiscard]] Handle create_dataset(const std::string& dataset, hid_t type, hid_t space, hid_t properties,
                                         hid_t access) const;
 
     Handle m_file;
-    std::shared_ptr<ReservedSpace> m_reserved; ///< of a created file
+    std::filesystem::path m_created; ///< where `close` writes it to; empty: the file was opened
     std::string m_name;
 };
 
@@ -103,9 +77,6 @@ class Series {
 public:
     /// `row` is the shape of one row; empty for one number.
     Series(const File& file, std::string dataset, Shape row);
-    Series(Series&&) noexcept = default;
-    Series& operator=(Series&&) noexcept = default;
-    ~Series();
 
     template <class T>
     void append(const T* values);
@@ -114,8 +85,6 @@ public:
 
 private:
     std::string m_file;
-    std::shared_ptr<ReservedSpace> m_reserved;
-    hsize_t m_row_bytes = sizeof(double);
     std::string m_name;
     Shape m_row;
     hsize_t m_rows = 0;

@@ -12,67 +12,16 @@
 
 namespace springfit::io::hdf5 {
 
-inline ReservedSpace::ReservedSpace(const std::filesystem::path& path, std::string shown)
-    : m_descriptor(path, O_RDWR | O_CREAT), m_name(std::move(shown)) {
-    if (!m_descriptor.is_open()) {
-        throw FileError(m_name, text("cannot be created: ", io::detail::reason(errno)));
-    }
-}
-
-inline void ReservedSpace::make(hid_t object, hsize_t bytes) {
-    haddr_t given_out = 0;
-    if (object >= 0) {
-        const Handle file(H5Iget_file_id(object), H5Fclose);
-        H5Fget_eoa(file.get(), &given_out);
-    }
-    constexpr hsize_t beside = 1 << 20; // HDF5's own notes, and a chunk of each series that is still in memory
-    const hsize_t size = given_out + bytes + beside;
-    if (size <= m_size) {
-        return;
-    }
-    if (const int error = ::posix_fallocate(m_descriptor.get(), 0, static_cast<off_t>(size)); error != 0) {
-        throw FileError(m_name, text("cannot be written: ", io::detail::reason(error)));
-    }
-    m_size = size;
-}
-
-inline void ReservedSpace::trim(hsize_t size) {
-    if (::ftruncate(m_descriptor.get(), static_cast<off_t>(size)) != 0) {
-        throw FileError(m_name, text("cannot be written: ", io::detail::reason(errno)));
-    }
-}
-
-inline void ReservedSpace::abandon(hid_t object) noexcept {
-    if (std::exchange(m_abandoned, true)) {
-        return;
-    }
-    const detail::Quiet quiet;
-    const Handle file(H5Iget_file_id(object), H5Fclose);
-    void* descriptor = nullptr; // of the POSIX file under HDF5
-    const io::detail::Descriptor nowhere("/dev/null", O_RDWR);
-    if (H5Fget_vfd_handle(file.get(), H5P_DEFAULT, &descriptor) >= 0 && nowhere.is_open()) {
-        (void)::dup2(nowhere.get(), *static_cast<int*>(descriptor));
-    }
-}
-
-inline File::~File() {
-    if (m_file.is_open() && m_reserved != nullptr) {
-        m_reserved->abandon(m_file.get());
-    }
-}
-
 inline File File::create(const std::filesystem::path& path, std::string shown) {
     const detail::Quiet quiet;
-    ReservedSpace(path, shown).make(-1, 0);
     const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    H5Pset_fapl_sec2(access.get()); // a plain POSIX file, whatever the environment asks for: see `abandon`
+    constexpr std::size_t growth = 1 << 20;
+    H5Pset_fapl_core(access.get(), growth, false);
     Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose);
     if (!file.is_open()) {
         throw FileError(shown, text("cannot be created: ", detail::last_error()));
     }
-    auto room = std::make_shared<ReservedSpace>(path, shown); // truncated with the file: made anew
-    room->make(file.get(), 0);
-    return {std::move(file), std::move(room), std::move(shown)};
+    return {std::move(file), path, std::move(shown)};
 }
 
 inline File File::open(const std::filesystem::path& path) {
@@ -88,7 +37,7 @@ inline File File::open(const std::filesystem::path& path) {
     if (!file.is_open()) {
         throw FileError(path.string(), text("cannot be read: ", detail::last_error()));
     }
-    return {std::move(file), nullptr, path.string()};
+    return {std::move(file), {}, path.string()};
 }
 
 inline bool File::is_hdf5(const std::filesystem::path& path) {
@@ -122,7 +71,7 @@ inline Handle File::open_dataset(const std::string& dataset) const {
     if (!handle.is_open()) {
         refuse(dataset, links.refusal().empty() ? text("cannot be read: ", detail::last_error()) : links.refusal());
     }
-    if (m_reserved == nullptr) { // not of this program's own making
+    if (m_created.empty()) { // not of this program's own making
         detail::check_stored(*this, dataset, handle);
     }
     return handle;
@@ -147,21 +96,15 @@ inline Shape File::shape(const std::string& dataset) const {
 template <class T>
 void File::write(const std::string& dataset, const T* values, const Shape& shape) {
     const detail::Quiet quiet;
-    hsize_t bytes = sizeof(double);
-    for (const hsize_t size : shape) {
-        bytes *= size;
-    }
-    make_room(bytes);
     const Handle space = detail::simple_space(shape, shape);
     const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-    const Handle handle =
-        create_dataset(dataset, detail::file_type<T>(), space.get(), properties.get(), H5P_DEFAULT);
+    Handle handle = create_dataset(dataset, detail::file_type<T>(), space.get(), properties.get(), H5P_DEFAULT);
     const bool empty = std::find(shape.begin(), shape.end(), hsize_t(0)) != shape.end();
-    if ((!empty && H5Dwrite(handle.get(), detail::memory_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) ||
-        H5Dflush(handle.get()) < 0) {
-        const std::string reason = detail::last_error();
-        m_reserved->abandon(handle.get());
-        refuse(dataset, text("cannot be written: ", reason));
+    if (!empty && H5Dwrite(handle.get(), detail::memory_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) {
+        refuse(dataset, text("cannot be written: ", detail::last_error()));
+    }
+    if (!handle.close()) {
+        refuse(dataset, text("cannot be written: ", detail::last_error()));
     }
 }
 
@@ -220,7 +163,6 @@ void File::read_rows(const std::string& dataset, const Shape& expected, const Ta
 
 inline void File::write_view(const std::string& view, const std::string& dataset, hsize_t row, hsize_t columns) {
     const detail::Quiet quiet;
-    make_room(0);
     const Shape source_shape = shape(dataset);
     const Shape view_shape{source_shape[1], columns};
     const Shape start{row, 0, 0};
@@ -241,7 +183,6 @@ inline void File::write_view(const std::string& view, const std::string& dataset
 
 inline void File::write_attribute(const std::string& object, const std::string& attribute, const std::string& value) {
     const detail::Quiet quiet;
-    make_room(value.size());
     const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
     H5Tset_size(type.get(), H5T_VARIABLE);
     H5Tset_cset(type.get(), H5T_CSET_UTF8);
@@ -290,13 +231,20 @@ inline std::optional<std::string> File::attribute(const std::string& object, con
 
 inline void File::close() {
     const detail::Quiet quiet;
-    make_room(0);
-    haddr_t size = 0;
-    if (H5Fflush(m_file.get(), H5F_SCOPE_GLOBAL) < 0 || H5Fget_eoa(m_file.get(), &size) < 0) {
+    const bool is_flushed = H5Fflush(m_file.get(), H5F_SCOPE_GLOBAL) >= 0;
+    const ssize_t size = is_flushed ? H5Fget_file_image(m_file.get(), nullptr, 0) : -1;
+    void* content = nullptr; // points to where the file is in memory
+    if (size < 0 || H5Fget_vfd_handle(m_file.get(), H5P_DEFAULT, &content) < 0) {
         throw FileError(m_name, text("cannot be written: ", detail::last_error()));
     }
-    m_reserved->abandon(m_file.get()); // all of it is written; closing can no longer fail
-    m_reserved->trim(size);
+    io::detail::Descriptor disk(m_created, O_WRONLY | O_CREAT | O_TRUNC);
+    if (!disk.is_open()) {
+        throw FileError(m_name, text("cannot be created: ", io::detail::reason(errno)));
+    }
+    io::detail::write_all(disk, {*static_cast<const char**>(content), static_cast<std::size_t>(size)}, m_name);
+    if (!disk.close()) {
+        throw FileError(m_name, text("cannot be written: ", io::detail::reason(errno)));
+    }
     if (!m_file.close()) {
         throw FileError(m_name, text("cannot be closed: ", detail::last_error()));
     }
