@@ -2,12 +2,18 @@
 // What `springfit fit` reads and writes besides meshes.
 
 #include <cstdio>
+#include <cstring>
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <springfit/io/json.hpp>
 #include <springfit/motion/units.hpp>
 #include <springfit/score/embedded_error.hpp>
 
 #include "files.hpp"
+#include "interrupt.hpp"
 
 namespace program {
 
@@ -42,6 +48,34 @@ Values<double> read_masses(const std::string& path, Index n_nodes) {
         }
     }
     return masses;
+}
+
+void try_to_read(const std::string& path) {
+    const pid_t child = ::fork();
+    if (child < 0) {
+        return; // no process to be had: read without a trial
+    }
+    if (child == 0) {
+        const io::detail::Descriptor nowhere("/dev/null", O_WRONLY);
+        ::dup2(nowhere.get(), STDERR_FILENO);
+        try {
+            if (io::read_motion_dimension(path) == 2) {
+                (void)io::read_motion<2, double>(path);
+            } else {
+                (void)io::read_motion<3, double>(path);
+            }
+        } catch (const std::exception&) { // comes again
+        }
+        H5close(); // as at the end of the program
+        ::_exit(0);
+    }
+    int status = 0;
+    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    if (WIFSIGNALED(status) && !interrupted()) {
+        throw FileError(path, text("is damaged: HDF5 crashes on it (", ::strsignal(WTERMSIG(status)),
+                                   "); write it anew, or have h5repack or h5py do so"));
+    }
 }
 
 template <int Dim>

@@ -33,7 +33,7 @@ int explicit_steps_per_frame(const SymplecticEuler<Dim, double>& stepper, double
     require(substeps / substeps_at_once < most_steps / at_least + 1, "--duration",
             text("frames of at most ", double(substeps_at_once) * most_steps,
                  " stable steps (more --frames, or --integrator implicit)"),
-            text(dt, " s between frames, with steps of ", step / substeps, " s or less"));
+            text(dt, " s between frames, with a stable step of ", stable_step(stepper.network()), " s"));
     return at_least * (1 + substeps / substeps_at_once);
 }
 
