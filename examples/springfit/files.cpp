@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What `springfit fit` reads and writes besides meshes.
 
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,6 +14,7 @@
 #include <springfit/motion/units.hpp>
 #include <springfit/score/embedded_error.hpp>
 
+#include "commands.hpp"
 #include "files.hpp"
 #include "interrupt.hpp"
 
@@ -58,12 +61,14 @@ void try_to_read(const std::string& path) {
     if (child == 0) {
         const io::detail::Descriptor nowhere("/dev/null", O_WRONLY);
         ::dup2(nowhere.get(), STDERR_FILENO);
+        for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+            std::signal(signal, SIG_DFL);
+        }
+        constexpr rlim_t seconds_of_processor = 100; // some 10 GB
+        const rlimit limit{seconds_of_processor, seconds_of_processor};
+        ::setrlimit(RLIMIT_CPU, &limit);
         try {
-            if (io::read_motion_dimension(path) == 2) {
-                (void)io::read_motion<2, double>(path);
-            } else {
-                (void)io::read_motion<3, double>(path);
-            }
+            io::scan_motion(path);
         } catch (const std::exception&) { // comes again
         }
         H5close(); // as at the end of the program
@@ -72,9 +77,12 @@ void try_to_read(const std::string& path) {
     int status = 0;
     while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
-    if (WIFSIGNALED(status) && !interrupted()) {
-        throw FileError(path, text("is damaged: HDF5 crashes on it (", ::strsignal(WTERMSIG(status)),
-                                   "); write it anew, or have h5repack or h5py do so"));
+    if (interrupted()) {
+        throw Interrupted();
+    }
+    if (WIFSIGNALED(status)) {
+        throw FileError(path, text("is damaged: HDF5 cannot read it (", ::strsignal(WTERMSIG(status)),
+                                   "); write it anew"));
     }
 }
 

@@ -169,6 +169,19 @@ inline int read_motion_dimension(const std::filesystem::path& path) {
     return detail::motion_dimension(detail::open_motion(path).file);
 }
 
+inline void scan_motion(const std::filesystem::path& path) {
+    const hdf5::File file = detail::open_motion(path).file;
+    (void)file.attribute("/", "case");
+    for (const char* dataset :
+         {"/mesh/points", "/mesh/cells", "/mesh/clamped", "/springs", "/time", "/reference/displacement",
+          "/reference/velocity", "/reference/acceleration", "/reference/force"}) {
+        if (file.has(dataset)) {
+            (void)file.attribute(dataset, "kind");
+            file.read_rows<double>(dataset, file.shape(dataset), [](std::size_t, const double*) {});
+        }
+    }
+}
+
 template <int Dim, std::floating_point Scalar>
 RecordedMotion<Dim, Scalar> read_motion(const std::filesystem::path& path) {
     const detail::MotionSource source = detail::open_motion(path);
