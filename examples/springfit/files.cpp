@@ -81,8 +81,8 @@ void try_to_read(const std::string& path) {
         throw Interrupted();
     }
     if (WIFSIGNALED(status)) {
-        throw FileError(path, text("is damaged: HDF5 cannot read it (", ::strsignal(WTERMSIG(status)),
-                                   "); write it anew"));
+        throw FileError(path,
+                        text("is damaged: HDF5 cannot read it (", ::strsignal(WTERMSIG(status)), "); write it anew"));
     }
 }
 

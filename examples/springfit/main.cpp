@@ -202,10 +202,11 @@ std::string size_of_task(const program::FitOptions& fit, const program::Simulate
     return task;
 }
 
-constexpr const char* exit_codes =
-    "Exit codes: 0 the result is written; 1 a fault of springfit's own; 2 the input cannot be used, nothing is written;\n"
-    "3 the result is written, but its verdict is poor or unusable; 130 interrupted (Ctrl-C, SIGTERM, SIGHUP), with what "
-    "there\nwas by then written.";
+constexpr const char* exit_codes = "Exit codes: 0 the result is written; 1 a fault of springfit's own; 2 the input "
+                                   "cannot be used, nothing is written;\n"
+                                   "3 the result is written, but its verdict is poor or unusable; 130 interrupted "
+                                   "(Ctrl-C, SIGTERM, SIGHUP), with what "
+                                   "there\nwas by then written.";
 
 } // namespace
 

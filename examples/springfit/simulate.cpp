@@ -90,12 +90,13 @@ int simulate_model(const io::Model<Dim, double>& model, const SimulateOptions& o
         throw Interrupted();
     }
     if (recording.status != Status::converged && recording.status != Status::interrupted) {
-        throw InvalidArgument("simulation",
-                              recording.status == Status::diverged
-                                  ? "a motion that stays finite (a shorter --time-step or --integrator implicit may help)"
-                                  : "steps that can be solved (a shorter --time-step may help)",
-                              text(to_string(recording.status), " after ", recording.motion.n_frames(), " of ",
-                                   options.frames, " frames; nothing was written"));
+        throw InvalidArgument(
+            "simulation",
+            recording.status == Status::diverged
+                ? "a motion that stays finite (a shorter --time-step or --integrator implicit may help)"
+                : "steps that can be solved (a shorter --time-step may help)",
+            text(to_string(recording.status), " after ", recording.motion.n_frames(), " of ", options.frames,
+                 " frames; nothing was written"));
     }
     io::OutputGroup outputs;
     const auto write = [&](const char* name, const Motion<Dim, double>& body, const io::MotionTopology& topology,

@@ -141,8 +141,8 @@ TEST_CASE("what a killed run left is removed by the next, what a living one writ
     ::kill(living, SIGKILL);
     ::waitpid(living, nullptr, 0);
     write_file(folder / "a.txt", "full");
-    CHECK(folder.names() == std::vector<std::string>{".a.txt.4711.partial", ".a.txt.partial",
-                                                     ".b.txt.1-0.elsewhere.partial", "a.txt"});
+    CHECK(folder.names() ==
+          std::vector<std::string>{".a.txt.4711.partial", ".a.txt.partial", ".b.txt.1-0.elsewhere.partial", "a.txt"});
 }
 
 TEST_CASE("a full disk is reported with the name of the file and leaves nothing") {

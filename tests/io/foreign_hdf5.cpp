@@ -29,10 +29,10 @@ using hdf5::Shape;
 
 /// How a dataset lies in its file.
 struct Layout {
-    Shape chunk{};         ///< empty: in one piece
-    int deflate = 0;       ///< level of compression; 0: none
-    bool grows = false;    ///< along its first axis, so that a chunk may be larger than the array
-    bool is_written = true; ///< false: its size is in the file, but not its numbers
+    Shape chunk{};                       ///< empty: in one piece
+    int deflate = 0;                     ///< level of compression; 0: none
+    bool grows = false;                  ///< along its first axis, so that a chunk may be larger than the array
+    bool is_written = true;              ///< false: its size is in the file, but not its numbers
     std::function<void(hid_t)> change{}; ///< of the properties
 };
 
@@ -50,8 +50,8 @@ public:
         if (layout.grows) {
             maximum[0] = H5S_UNLIMITED;
         }
-        const Handle space = shape.empty() ? Handle(H5Screate(H5S_SCALAR), H5Sclose)
-                                           : hdf5::detail::simple_space(shape, maximum);
+        const Handle space =
+            shape.empty() ? Handle(H5Screate(H5S_SCALAR), H5Sclose) : hdf5::detail::simple_space(shape, maximum);
         const hid_t type = hdf5::detail::memory_type<T>();
         const Handle dataset = create(name, type, space.get(), layout);
         if (layout.is_written) {
@@ -111,7 +111,8 @@ private:
             layout.change(properties.get());
         }
         Handle dataset(
-            H5Dcreate2(m_file.get(), name.c_str(), type, space, links().get(), properties.get(), H5P_DEFAULT), H5Dclose);
+            H5Dcreate2(m_file.get(), name.c_str(), type, space, links().get(), properties.get(), H5P_DEFAULT),
+            H5Dclose);
         REQUIRE(dataset.is_open());
         return dataset;
     }
@@ -151,10 +152,12 @@ TEST_CASE("clamped nodes are one number, a list, or a list in two dimensions") {
           "/mesh/clamped: expected a list of node numbers, found [1 x 2 x 1]");
     CHECK(error_with([](auto& file) { file.put("/time", std::vector<double>{0}, {}); }) ==
           "/time: expected [frames], at least one, found []");
-    CHECK(error_with([](auto& file) { file.put("/mesh/points", std::vector<double>{0}, {}); })
-              .starts_with("/mesh/points: expected [nodes x 2] or [nodes x 3]"));
-    CHECK(error_with([](auto& file) { file.put("/springs", std::vector<int>{0}, {}); })
-              .starts_with("/springs: expected [springs x 2]"));
+    CHECK(error_with([](auto& file) {
+              file.put("/mesh/points", std::vector<double>{0}, {});
+          }).starts_with("/mesh/points: expected [nodes x 2] or [nodes x 3]"));
+    CHECK(error_with([](auto& file) {
+              file.put("/springs", std::vector<int>{0}, {});
+          }).starts_with("/springs: expected [springs x 2]"));
 }
 
 TEST_CASE("node numbers beyond an int are refused as they are") {
@@ -229,8 +232,7 @@ TEST_CASE("a frame of a compressed recording in one chunk does not cost the whol
     }
     file.put("/mesh/points", std::vector<double>(nodes * 2, 0.), {nodes, 2});
     file.put("/time", times, {frames});
-    file.put("/reference/displacement", displacement, {frames, nodes, 2},
-             {.chunk = {frames, nodes, 2}, .deflate = 1});
+    file.put("/reference/displacement", displacement, {frames, nodes, 2}, {.chunk = {frames, nodes, 2}, .deflate = 1});
     file.complete();
     const auto start = std::chrono::steady_clock::now();
     CHECK(read_motion<2, double>(folder / "other.h5").motion.n_frames() == 4000);
@@ -243,8 +245,7 @@ TEST_CASE("numbers that are in other files are read only from the same folder or
               file.put("/mesh/points", std::vector<double>(8, 0.), {4, 2},
                        {.is_written = false,
                         .change = [](hid_t p) { H5Pset_external(p, "/etc/passwd", 0, H5F_UNLIMITED); }});
-          }) ==
-          "/mesh/points: its numbers are in another file (external storage), which is not read; store them here");
+          }) == "/mesh/points: its numbers are in another file (external storage), which is not read; store them here");
     CHECK(error_with([](auto& file) {
               file.put("/mesh/points", std::vector<double>(8, 0.), {4, 2},
                        {.is_written = false, .change = [](hid_t p) {
@@ -277,8 +278,9 @@ TEST_CASE("numbers that are in other files are read only from the same folder or
     // A group may be the link as well, and the file that is linked to may link on.
     ForeignFile group(folder / "a/group.h5");
     group.link("/reference", "../outside.h5", "/reference");
-    CHECK(file_error([&] { (void)read_motion<2, double>(folder / "a/group.h5"); })
-              .starts_with((folder / "a/group.h5").string()));
+    CHECK(file_error([&] {
+              (void)read_motion<2, double>(folder / "a/group.h5");
+          }).starts_with((folder / "a/group.h5").string()));
     ForeignFile on(folder / "a/on.h5");
     on.link("/mesh/points", "../outside.h5", "/mesh/points");
     on.complete();
@@ -317,8 +319,9 @@ TEST_CASE("an XDMF file leads to files in its folder or below it alone, in linea
 }
 
 TEST_CASE("times so close together that there is no velocity, and recordings without a number, are refused") {
-    CHECK(error_with([](auto& file) { file.put("/time", std::vector<double>{0, 1e-320, 1}, {3}); })
-              .starts_with("/time: expected times so far apart that velocities"));
+    CHECK(error_with([](auto& file) {
+              file.put("/time", std::vector<double>{0, 1e-320, 1}, {3});
+          }).starts_with("/time: expected times so far apart that velocities"));
     CHECK(error_with([](auto& file) {
               file.put("/reference/displacement", std::vector<double>(24, std::nan("")), {3, 4, 2});
           }) == "/reference/displacement: expected a node that was seen, found no number in any frame");

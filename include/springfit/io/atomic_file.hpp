@@ -69,8 +69,8 @@ inline void write_file(const std::filesystem::path& target, std::string_view con
 /// Folders that it created and that are still empty when it goes out of scope are removed again.
 class OutputFolder {
 public:
-    /// Throws InvalidArgument for an empty name, FileError where `path` is a file, cannot be created or cannot be written
-    /// to.
+    /// Throws InvalidArgument for an empty name, FileError where `path` is a file, cannot be created or cannot be
+    /// written to.
     explicit OutputFolder(std::filesystem::path path);
     OutputFolder(const OutputFolder&) = delete;
     OutputFolder& operator=(const OutputFolder&) = delete;

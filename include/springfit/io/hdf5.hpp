@@ -19,8 +19,8 @@ class File {
 public:
     /// A new file, in memory until `close` writes it to `path`; errors name `shown`, the file that it is to become.
     ///
-    /// HDF5 1.10 does not write to the disk by itself, since it cannot stand a write that fails: it tries again when the
-    /// program ends, and crashes there.
+    /// HDF5 1.10 does not write to the disk by itself, since it cannot stand a write that fails: it tries again when
+    /// the program ends, and crashes there.
     [[nodiscard]] static File create(const std::filesystem::path& path, std::string shown);
     [[nodiscard]] static File open(const std::filesystem::path& path);
     /// True where the file exists and is of this format.

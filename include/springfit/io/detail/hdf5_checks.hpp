@@ -102,10 +102,11 @@ inline void check_stored(const File& file, const std::string& dataset, const Han
     const bool is_filtered = H5Pget_nfilters(properties.get()) != 0;
     const hsize_t most = is_filtered ? std::max(small_array, largest_compression * in_file) : stored;
     const auto refuse_size = [&](std::string_view what, const Shape& sizes) {
-        file.refuse(dataset, text("promises ", what, to_text(sizes), " of ", H5Tget_size(type.get()), " bytes each, but ",
-                                  is_filtered ? text("the file has ", in_file, " bytes, and a compressed array may be ",
-                                                     largest_compression, " times as large")
-                                              : text("only ", stored, " bytes are stored")));
+        file.refuse(dataset,
+                    text("promises ", what, to_text(sizes), " of ", H5Tget_size(type.get()), " bytes each, but ",
+                         is_filtered ? text("the file has ", in_file, " bytes, and a compressed array may be ",
+                                            largest_compression, " times as large")
+                                     : text("only ", stored, " bytes are stored")));
     };
     const Shape shape = shape_of(handle);
     const auto needed = total_bytes(shape, H5Tget_size(type.get()));

@@ -215,9 +215,8 @@ RecordedMotion<Dim, Scalar> read_motion(const std::filesystem::path& path) {
         return detail::read_frames<Dim, Scalar>(file, dataset, motion.times.size(), n_nodes, rule);
     };
     motion.positions = read("/reference/displacement", detail::NotANumber::unobserved);
-    const bool is_seen = std::any_of(motion.positions.begin(), motion.positions.end(), [](const auto& frame) {
-        return frame.array().isFinite().colwise().all().any();
-    });
+    const bool is_seen = std::any_of(motion.positions.begin(), motion.positions.end(),
+                                     [](const auto& frame) { return frame.array().isFinite().colwise().all().any(); });
     if (!is_seen) {
         file.refuse("/reference/displacement", "expected a node that was seen, found no number in any frame");
     }
@@ -238,8 +237,9 @@ RecordedMotion<Dim, Scalar> read_motion(const std::filesystem::path& path) {
     }
     for (std::size_t t = 0; t < motion.times.size(); ++t) {
         if (!motion.velocities[t].allFinite() || !motion.accelerations[t].allFinite()) {
-            file.refuse("/time", text("expected times so far apart that velocities and accelerations are finite, found ",
-                                      motion.times[t], " in frame ", t));
+            file.refuse("/time",
+                        text("expected times so far apart that velocities and accelerations are finite, found ",
+                             motion.times[t], " in frame ", t));
         }
     }
     result.forces_recorded = file.has("/reference/force");
