@@ -318,6 +318,18 @@ TEST_CASE("an XDMF file leads to files in its folder or below it alone, in linea
     CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(10)); // some .05 s
 }
 
+TEST_CASE("a motion that reads is one that scans") {
+    const ScratchFolder folder;
+    ForeignFile(folder / "good.h5").complete();
+    CHECK_NOTHROW(scan_motion(folder / "good.h5"));
+    ForeignFile file(folder / "other.h5");
+    file.put("/reference/force", std::vector<double>(), {1000000000}, {.is_written = false});
+    file.complete();
+    CHECK(file_error([&] {
+              scan_motion(folder / "other.h5");
+          }).starts_with((folder / "other.h5").string() + ": /reference/force: promises [1000000000]"));
+}
+
 TEST_CASE("times so close together that there is no velocity, and recordings without a number, are refused") {
     CHECK(error_with([](auto& file) {
               file.put("/time", std::vector<double>{0, 1e-320, 1}, {3});

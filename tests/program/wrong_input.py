@@ -231,7 +231,7 @@ stiff = broken | {"nodes": broken["nodes"] | {"mass": [1e-3, 1e-3]},
 (folder / "stiff.json").write_text(json.dumps(stiff))
 simulated("more than a million steps in a frame", ["--duration", "20", "--frames", "4"], 0, [4])
 for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-    simulated(f"a simulation that {number.name} ends", ["--duration", "10000", "--frames", "1000000"], 130,
+    simulated(f"a simulation that {number.name} ends", ["--duration", "1e7", "--frames", "1000000"], 130,
               range(1, 1000000), number)
 
 sys.exit(1 if failures else 0)
