@@ -63,6 +63,8 @@ private:
     friend class Series;
     File(Handle file, std::filesystem::path created, std::string name)
         : m_file(std::move(file)), m_created(std::move(created)), m_name(std::move(name)) {}
+    /// Refuses the dataset where there is a problem.
+    void accept(const std::string& dataset, const std::string& problem) const;
     [[nodiscard]] Handle open_dataset(const std::string& dataset) const;
     [[nodiscard]] Handle create_dataset(const std::string& dataset, hid_t type, hid_t space, hid_t properties,
                                         hid_t access) const;

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include <springfit/io/detail/file_reference.hpp>
-#include <springfit/io/hdf5.hpp>
+#include <springfit/io/detail/hdf5_calls.hpp>
 
 /// What an HDF5 file of a stranger is asked before its sizes and links are believed.
 namespace springfit::io::hdf5::detail {
@@ -83,41 +83,42 @@ private:
 inline constexpr hsize_t largest_compression = 100;
 inline constexpr hsize_t small_array = 16 << 20;
 
-/// Refuses a dataset whose numbers are elsewhere, or that promises more than its file can hold.
-inline void check_stored(const File& file, const std::string& dataset, const Handle& handle) {
+/// Why a dataset is not to be read: its numbers are elsewhere, or it promises more than its file can hold. Empty where
+/// it may be.
+[[nodiscard]] inline std::string storage_problem(const Handle& handle) {
     const Handle space(H5Dget_space(handle.get()), H5Sclose);
     if (H5Sget_simple_extent_type(space.get()) == H5S_NULL) {
-        file.refuse(dataset, "holds nothing, not even a size (a null dataspace)");
+        return "holds nothing, not even a size (a null dataspace)";
     }
     const Handle properties(H5Dget_create_plist(handle.get()), H5Pclose);
     if (H5Pget_external_count(properties.get()) != 0) {
-        file.refuse(dataset, "its numbers are in another file (external storage), which is not read; store them here");
+        return "its numbers are in another file (external storage), which is not read; store them here";
     }
     if (H5Pget_layout(properties.get()) == H5D_VIRTUAL) {
-        file.refuse(dataset, "is a view of other datasets (virtual), which is not read; store its numbers here");
+        return "is a view of other datasets (virtual), which is not read; store its numbers here";
     }
     const Handle type(H5Dget_type(handle.get()), H5Tclose);
     const hsize_t in_file = size_of_file(handle);
     const hsize_t stored = std::min<hsize_t>(H5Dget_storage_size(handle.get()), in_file);
     const bool is_filtered = H5Pget_nfilters(properties.get()) != 0;
     const hsize_t most = is_filtered ? std::max(small_array, largest_compression * in_file) : stored;
-    const auto refuse_size = [&](std::string_view what, const Shape& sizes) {
-        file.refuse(dataset,
-                    text("promises ", what, to_text(sizes), " of ", H5Tget_size(type.get()), " bytes each, but ",
-                         is_filtered ? text("the file has ", in_file, " bytes, and a compressed array may be ",
-                                            largest_compression, " times as large")
-                                     : text("only ", stored, " bytes are stored")));
+    const auto promise = [&](std::string_view what, const Shape& sizes) {
+        return text("promises ", what, to_text(sizes), " of ", H5Tget_size(type.get()), " bytes each, but ",
+                    is_filtered ? text("the file has ", in_file, " bytes, and a compressed array may be ",
+                                       largest_compression, " times as large")
+                                : text("only ", stored, " bytes are stored"));
     };
     const Shape shape = shape_of(handle);
     const auto needed = total_bytes(shape, H5Tget_size(type.get()));
     if (!needed || *needed > most) {
-        refuse_size("", shape);
+        return promise("", shape);
     }
     const Shape chunk = chunk_of(properties.get());
     const auto chunk_bytes = total_bytes(chunk, H5Tget_size(type.get()));
     if (!chunk.empty() && *needed > 0 && (!chunk_bytes || *chunk_bytes > most)) {
-        refuse_size("chunks of ", chunk);
+        return promise("chunks of ", chunk);
     }
+    return {};
 }
 
 /// True for a type of numbers that has all of its bits within its bytes, as those of machines do.
@@ -141,15 +142,16 @@ inline void check_stored(const File& file, const std::string& dataset, const Han
            mantissa + mantissa_bits <= bits;
 }
 
-/// Refuses what cannot be read as numbers of type T.
+/// Why a dataset cannot be read as numbers of type T; empty where it can.
 template <class T>
-void check_type(const File& file, const std::string& dataset, const Handle& handle) {
+[[nodiscard]] std::string type_problem(const Handle& handle) {
     const Handle type(H5Dget_type(handle.get()), H5Tclose);
     const H5T_class_t found = H5Tget_class(type.get());
     const bool accepted = found == H5T_INTEGER || (std::is_floating_point_v<T> && found == H5T_FLOAT);
     if (!accepted || !is_sound_number(type.get())) {
-        file.refuse(dataset, std::is_floating_point_v<T> ? "expected numbers" : "expected whole numbers");
+        return std::is_floating_point_v<T> ? "expected numbers" : "expected whole numbers";
     }
+    return {};
 }
 
 } // namespace springfit::io::hdf5::detail

@@ -72,7 +72,7 @@ inline Handle File::open_dataset(const std::string& dataset) const {
         refuse(dataset, links.refusal().empty() ? text("cannot be read: ", detail::last_error()) : links.refusal());
     }
     if (m_created.empty()) { // not of this program's own making
-        detail::check_stored(*this, dataset, handle);
+        accept(dataset, detail::storage_problem(handle));
     }
     return handle;
 }
@@ -112,7 +112,7 @@ template <class T>
 void File::read(const std::string& dataset, T* values, const Shape& expected) const {
     const Handle handle = open_dataset(dataset);
     const detail::Quiet quiet;
-    detail::check_type<T>(*this, dataset, handle);
+    accept(dataset, detail::type_problem<T>(handle));
     if (const Shape found = detail::shape_of(handle); found != expected) {
         refuse(dataset, text("expected ", to_text(expected), ", found ", to_text(found)));
     }
@@ -125,7 +125,7 @@ template <class T, class Take>
 void File::read_rows(const std::string& dataset, const Shape& expected, const Take& take) const {
     const Handle handle = open_dataset(dataset);
     const detail::Quiet quiet;
-    detail::check_type<T>(*this, dataset, handle);
+    accept(dataset, detail::type_problem<T>(handle));
     Shape shape = detail::shape_of(handle);
     if (shape != expected) {
         refuse(dataset, text("expected ", to_text(expected), ", found ", to_text(shape)));
@@ -247,6 +247,12 @@ inline void File::close() {
     }
     if (!m_file.close()) {
         throw FileError(m_name, text("cannot be closed: ", detail::last_error()));
+    }
+}
+
+inline void File::accept(const std::string& dataset, const std::string& problem) const {
+    if (!problem.empty()) {
+        refuse(dataset, problem);
     }
 }
 
