@@ -13,8 +13,10 @@ public:
     Interrupted() : std::runtime_error("interrupted") {}
 };
 
-constexpr int exit_interrupted = 130;
+constexpr int exit_fault = 1; ///< of the program's own
+constexpr int exit_refused = 2;
 constexpr int exit_poor = 3;
+constexpr int exit_interrupted = 130;
 
 /// Each returns the exit code: 0; `exit_poor` where the result is written but its verdict is poor or unusable;
 /// `exit_interrupted` where Ctrl-C ended it early with the best result so far written. Throws InvalidArgument or

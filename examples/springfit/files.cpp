@@ -1,13 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What `springfit fit` reads and writes besides meshes.
 
+#include <csignal>
 #include <cstdio>
+#include <cstring>
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <springfit/io/json.hpp>
 #include <springfit/motion/units.hpp>
 #include <springfit/score/embedded_error.hpp>
 
+#include "commands.hpp"
 #include "files.hpp"
+#include "interrupt.hpp"
 
 namespace program {
 
@@ -42,6 +51,39 @@ Values<double> read_masses(const std::string& path, Index n_nodes) {
         }
     }
     return masses;
+}
+
+void try_to_read(const std::string& path) {
+    const pid_t child = ::fork();
+    if (child < 0) {
+        return; // no process to be had: read without a trial
+    }
+    if (child == 0) {
+        const io::detail::Descriptor nowhere("/dev/null", O_WRONLY);
+        ::dup2(nowhere.get(), STDERR_FILENO);
+        for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+            std::signal(signal, SIG_DFL);
+        }
+        constexpr rlim_t seconds_of_processor = 100; // some 10 GB
+        const rlimit limit{seconds_of_processor, seconds_of_processor};
+        ::setrlimit(RLIMIT_CPU, &limit);
+        try {
+            io::scan_motion(path);
+        } catch (const std::exception&) { // comes again
+        }
+        H5close(); // as at the end of the program
+        ::_exit(0);
+    }
+    int status = 0;
+    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    if (interrupted()) {
+        throw Interrupted();
+    }
+    if (WIFSIGNALED(status)) {
+        throw FileError(path,
+                        text("is damaged: HDF5 cannot read it (", ::strsignal(WTERMSIG(status)), "); write it anew"));
+    }
 }
 
 template <int Dim>

@@ -10,6 +10,10 @@
 
 namespace program {
 
+/// Reads a recorded motion for trial, in a process of its own: HDF5 crashes on some files that are damaged. Throws
+/// FileError where it does; what else is wrong shows when it is read in earnest. To be called before there are threads.
+void try_to_read(const std::string& path);
+
 /// A recorded motion in SI units, by `--unit` and `--time-unit`, with what there is to say of it.
 template <int Dim>
 [[nodiscard]] springfit::io::RecordedMotion<Dim, double>

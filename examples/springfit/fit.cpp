@@ -420,6 +420,7 @@ int fit_dimension(std::optional<AnyMesh> mesh, const std::optional<FineMesh>& fi
 } // namespace
 
 int run_fit(FitOptions options) {
+    require(!options.out.empty(), "--out", "a folder", "an empty name");
     options.inputs = expanded(options.inputs);
     options.input = options.inputs.front();
     options.references = expanded(options.references);
@@ -428,6 +429,10 @@ int run_fit(FitOptions options) {
         require(is_motion_file(path), "INPUT", "recorded motions (.xdmf .h5) after the first file", path);
     }
     check(options);
+    if (is_motion_file(options.input)) {
+        try_to_read(options.input);
+    }
+    std::for_each(options.references.begin(), options.references.end(), try_to_read);
     io::OutputFolder folder(options.out);
     Terminal terminal;
     io::NamedNumbers seconds;

@@ -2,6 +2,7 @@
 #include "interrupt.hpp"
 
 #include <csignal>
+#include <initializer_list>
 
 namespace program {
 
@@ -18,8 +19,16 @@ void on_interrupt(int signal) {
 
 void watch_for_interrupt() {
     pressed = 0;
-    std::signal(SIGINT, on_interrupt);
-    std::signal(SIGTERM, on_interrupt);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        if (std::signal(signal, on_interrupt) == SIG_IGN) {
+            std::signal(signal, SIG_IGN); // as `nohup` and the shell's background jobs ask
+        }
+    }
+}
+
+void keep_on_writing() {
+    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
 }
 
 bool interrupted() {

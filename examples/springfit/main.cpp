@@ -3,6 +3,8 @@
 
 #include <cstdio>
 #include <exception>
+#include <filesystem>
+#include <new>
 
 #include <CLI/CLI.hpp>
 
@@ -169,6 +171,43 @@ void declare_simulate(CLI::App& app, program::SimulateOptions& options) {
                  "longest step, s (default: the stable step, or the time between frames for implicit and projective)");
 }
 
+/// One line to standard error, whatever names and texts of files are in the message.
+int refuse(int exit_code, std::string message) {
+    constexpr std::size_t longest = 2000;
+    if (message.size() > longest) {
+        message.replace(longest, std::string::npos, "...");
+    }
+    for (char& c : message) {
+        const auto code = static_cast<unsigned char>(c);
+        c = code < 32 || code == 127 ? ' ' : c;
+    }
+    std::fprintf(stderr, "springfit: %s\n", message.c_str());
+    return exit_code;
+}
+
+/// What may ask for more memory than there is, in the words of the command line.
+std::string size_of_task(const program::FitOptions& fit, const program::SimulateOptions& simulate, bool fits) {
+    if (!fits) {
+        return springfit::text(simulate.model, " with --frames ", simulate.frames);
+    }
+    std::string task = fit.inputs.front();
+    if (fit.cell_size) {
+        task += springfit::text(" with --cell-size ", *fit.cell_size);
+    } else if (fit.nodes) {
+        task += springfit::text(" with --nodes ", *fit.nodes);
+    }
+    if (fit.reference_nodes) {
+        task += springfit::text(" and --reference-nodes ", *fit.reference_nodes);
+    }
+    return task;
+}
+
+constexpr const char* exit_codes = "Exit codes: 0 the result is written; 1 a fault of springfit's own; 2 the input "
+                                   "cannot be used, nothing is written;\n"
+                                   "3 the result is written, but its verdict is poor or unusable; 130 interrupted "
+                                   "(Ctrl-C, SIGTERM, SIGHUP), with what "
+                                   "there\nwas by then written.";
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -176,6 +215,7 @@ int main(int argc, char** argv) {
     app.set_version_flag("--version", SPRINGFIT_VERSION_STRING);
     app.require_subcommand(1);
     app.get_formatter()->column_width(32);
+    app.footer(exit_codes);
 
     program::FitOptions fit_options;
     program::SimulateOptions simulate_options;
@@ -183,14 +223,16 @@ int main(int argc, char** argv) {
     auto* simulate = app.add_subcommand("simulate", "step a fitted model and write its motion");
     declare_fit(*fit, fit_options);
     declare_simulate(*simulate, simulate_options);
+    fit->footer(exit_codes);
+    simulate->footer(exit_codes);
 
+    program::keep_on_writing();
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& request) { // --help, --version
         return app.exit(request);
     } catch (const CLI::ParseError& error) {
-        std::fprintf(stderr, "springfit: %s\n", error.what());
-        return 2;
+        return refuse(program::exit_refused, error.what());
     }
     program::watch_for_interrupt();
 #ifdef SPRINGFIT_PROGRAM_CHOLMOD
@@ -199,16 +241,22 @@ int main(int argc, char** argv) {
     try {
         return fit->parsed() ? program::run_fit(fit_options) : program::run_simulate(simulate_options);
     } catch (const springfit::InvalidArgument& error) {
-        std::fprintf(stderr, "springfit: %s\n", error.what());
-        return 2;
+        return refuse(program::exit_refused, error.what());
     } catch (const springfit::FileError& error) {
-        std::fprintf(stderr, "springfit: %s\n", error.what());
-        return 2;
+        return refuse(program::exit_refused, error.what());
+    } catch (const std::filesystem::filesystem_error& error) {
+        return refuse(program::exit_refused, error.what());
+    } catch (const std::bad_alloc&) {
+        return refuse(program::exit_refused,
+                      "not enough memory for " + size_of_task(fit_options, simulate_options, fit->parsed()));
+    } catch (const std::length_error&) { // of a container that can never be so large
+        return refuse(program::exit_refused,
+                      "not enough memory for " + size_of_task(fit_options, simulate_options, fit->parsed()));
     } catch (const program::Interrupted&) {
-        std::fprintf(stderr, "springfit: interrupted before there was a result; nothing was written\n");
-        return program::exit_interrupted;
+        return refuse(program::exit_interrupted, "interrupted before there was a result; nothing was written");
     } catch (const std::exception& error) {
-        std::fprintf(stderr, "springfit: internal error: %s\n", error.what());
-        return 1;
+        return refuse(program::exit_fault, springfit::text("internal error: ", error.what(),
+                                                           "; this is a fault of springfit's, please report it with "
+                                                           "the command and its input"));
     }
 }

@@ -2,6 +2,9 @@
 // `springfit simulate`: steps a fitted model and writes its motion.
 
 #include <cstdio>
+#include <limits>
+
+#include <unistd.h>
 
 #include <springfit/io/model_json.hpp>
 #include <springfit/io/motion_file.hpp>
@@ -18,6 +21,30 @@ namespace program {
 using namespace springfit;
 
 namespace {
+
+/// Into how many calls of its stepper a time between two frames is cut, so that the user's Ctrl-C is soon heard. Throws
+/// InvalidArgument for more steps than anybody can wait for.
+template <int Dim>
+int explicit_steps_per_frame(const SymplecticEuler<Dim, double>& stepper, double dt, int at_least) {
+    constexpr int substeps_at_once = 100000;
+    constexpr int most_steps = 10000;
+    const double step = dt / at_least;
+    const int substeps = stepper.n_substeps(step);
+    require(substeps / substeps_at_once < most_steps / at_least + 1, "--duration",
+            text("frames of at most ", double(substeps_at_once) * most_steps,
+                 " stable steps (more --frames, or --integrator implicit)"),
+            text(dt, " s between frames, with a stable step of ", stable_step(stepper.network()), " s"));
+    return at_least * (1 + substeps / substeps_at_once);
+}
+
+/// Refuses more frames than this machine can hold.
+void check_memory(const SimulateOptions& options, int dimension, Index n_nodes) {
+    constexpr double arrays = 4; // positions, velocities, accelerations and forces
+    const double needed = arrays * sizeof(double) * dimension * static_cast<double>(n_nodes) * options.frames;
+    const double there = static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
+    require(!(there > 0) || needed <= there, "--frames", "frames that the memory of this machine can hold",
+            text(options.frames, " of ", n_nodes, " nodes, which take ", std::ceil(needed / 1e9), " GB"));
+}
 
 template <int Dim>
 int simulate_model(const io::Model<Dim, double>& model, const SimulateOptions& options, io::OutputFolder& folder) {
@@ -38,8 +65,12 @@ int simulate_model(const io::Model<Dim, double>& model, const SimulateOptions& o
     how.frames = options.frames;
     how.dt = options.duration / (options.frames - 1);
     if (options.time_step) {
-        how.steps_per_frame = static_cast<int>(std::ceil(how.dt / *options.time_step * (1 - 1e-12)));
+        const double steps = std::ceil(how.dt / *options.time_step * (1 - 1e-12));
+        require(steps <= std::numeric_limits<int>::max(), "--time-step", "a step of which a frame has at most 2e9",
+                *options.time_step);
+        how.steps_per_frame = static_cast<int>(steps);
     }
+    check_memory(options, Dim, model.network.n_nodes());
     Terminal terminal;
     how.progress = terminal.callback();
     const auto recording = [&] {
@@ -51,12 +82,21 @@ int simulate_model(const io::Model<Dim, double>& model, const SimulateOptions& o
             ProjectiveEuler<Dim, double> stepper(model.network);
             return record_stepper(stepper, scenario, how);
         }
-        SymplecticEuler<Dim, double> stepper(model.network, {.max_substeps = 1000000});
+        SymplecticEuler<Dim, double> stepper(model.network, {.max_substeps = std::numeric_limits<int>::max()});
+        how.steps_per_frame = explicit_steps_per_frame(stepper, how.dt, how.steps_per_frame);
         return record_stepper(stepper, scenario, how);
     }();
-    if (!usable(recording.status) || recording.motion.n_frames() == 0) {
-        throw InvalidArgument("simulation", "a motion that stays finite",
-                              text(to_string(recording.status), " after ", recording.motion.n_frames(), " frames"));
+    if (recording.status == Status::interrupted && recording.motion.n_frames() == 0) {
+        throw Interrupted();
+    }
+    if (recording.status != Status::converged && recording.status != Status::interrupted) {
+        throw InvalidArgument(
+            "simulation",
+            recording.status == Status::diverged
+                ? "a motion that stays finite (a shorter --time-step or --integrator implicit may help)"
+                : "steps that can be solved (a shorter --time-step may help)",
+            text(to_string(recording.status), " after ", recording.motion.n_frames(), " of ", options.frames,
+                 " frames; nothing was written"));
     }
     io::OutputGroup outputs;
     const auto write = [&](const char* name, const Motion<Dim, double>& body, const io::MotionTopology& topology,
@@ -89,6 +129,7 @@ int simulate_model(const io::Model<Dim, double>& model, const SimulateOptions& o
 } // namespace
 
 int run_simulate(const SimulateOptions& options) {
+    require(!options.out.empty(), "--out", "a folder", "an empty name");
     require(options.duration > 0 && std::isfinite(options.duration), "--duration", "a positive time, s",
             options.duration);
     require(options.frames >= 2, "--frames", "at least 2", options.frames);

@@ -2,6 +2,8 @@
 #include "files.hpp"
 
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <springfit/io/atomic_file.hpp>
 
@@ -101,6 +103,48 @@ TEST_CASE("what a group is to remove goes when the group appears, and stays wher
     CHECK(content(folder / "a.txt") == "new");
 }
 
+TEST_CASE("what a killed run left is removed by the next, what a living one writes is not") {
+    const ScratchFolder folder;
+    const auto leave = [&](bool is_killed) {
+        int ready[2];
+        REQUIRE(::pipe(ready) == 0);
+        const pid_t child = ::fork();
+        REQUIRE(child >= 0);
+        if (child == 0) {
+            OutputGroup outputs;
+            outputs.write(folder / "a.txt", "half");
+            (void)::write(ready[1], "x", 1);
+            for (;;) {
+                ::pause();
+            }
+        }
+        char byte = 0;
+        REQUIRE(::read(ready[0], &byte, 1) == 1);
+        ::close(ready[0]);
+        ::close(ready[1]);
+        if (is_killed) {
+            ::kill(child, SIGKILL);
+            ::waitpid(child, nullptr, 0);
+        }
+        return child;
+    };
+    const pid_t living = leave(false);
+    (void)leave(true);
+    REQUIRE(folder.names().size() == 2);
+    put(folder / ".a.txt.partial", "mine");
+    put(folder / ".a.txt.4711.partial", "mine, too");
+    put(folder / ".b.txt.1-0.elsewhere.partial", "of another machine");
+    CHECK(folder.names().size() == 5);
+    write_file(folder / "a.txt", "full");
+    CHECK(content(folder / "a.txt") == "full");
+    CHECK(folder.names().size() == 5); // one went, one came
+    ::kill(living, SIGKILL);
+    ::waitpid(living, nullptr, 0);
+    write_file(folder / "a.txt", "full");
+    CHECK(folder.names() ==
+          std::vector<std::string>{".a.txt.4711.partial", ".a.txt.partial", ".b.txt.1-0.elsewhere.partial", "a.txt"});
+}
+
 TEST_CASE("a full disk is reported with the name of the file and leaves nothing") {
     const ScratchFolder folder;
     {
@@ -146,6 +190,7 @@ TEST_CASE("an output folder is created with its parents, and goes again where no
 
 TEST_CASE("an output folder that is a file or cannot be written to is refused") {
     const ScratchFolder folder;
+    CHECK_THROWS_WITH_AS(OutputFolder(""), "output folder: expected a name, found none", InvalidArgument);
     put(folder / "file", "x");
     CHECK(file_error([&] { OutputFolder output(folder / "file"); }) ==
           (folder / "file").string() + ": cannot be the output folder: it is a file");

@@ -345,6 +345,38 @@ TEST_CASE("what is missing or wrong in the cells of a model is named by its JSON
           "model.json: /cells/stiffness/0: expected a number, found \"soft\"");
 }
 
+TEST_CASE("what a file of a stranger may do to a model") {
+    CHECK(refusal([](Json& json) { json["nodes"] = {{"rest_position", Json::array()}, {"mass", Json::array()}}; }) ==
+          "model.json: /nodes/rest_position: expected an array, one position per node, at least one, found an array "
+          "of 0");
+    CHECK(refusal([](Json& json) { json["springs"]["nodes"][1][1] = 4; }) ==
+          "model.json: /springs/nodes/1/1: expected a whole number in [0, 4), found 4");
+    CHECK(refusal([](Json& json) { json["springs"]["nodes"][1][0] = 1e300; }) ==
+          "model.json: /springs/nodes/1/0: expected a whole number in [0, 4), found 1e+300");
+    CHECK(refusal([](Json& json) { json["springs"]["nodes"][1][0] = 4294967297; }) ==
+          "model.json: /springs/nodes/1/0: expected a whole number in [0, 4), found 4294967297");
+    const std::string shortened = refusal([](Json& json) { json["units"] = std::string(1000000, 'x'); });
+    CHECK(shortened.starts_with("model.json: /units: expected \"SI\", found \"xxxx"));
+    CHECK(shortened.size() < 150);
+}
+
+TEST_CASE("JSON that is nested deep is refused with its line, however deep") {
+    const ScratchFolder folder;
+    const std::string name = (folder / "model.json").string();
+    const auto nested = [](int depth) {
+        return std::string(static_cast<std::size_t>(depth), '[') + std::string(static_cast<std::size_t>(depth), ']');
+    };
+    const auto message = [&](const std::string& content) {
+        put(name, content);
+        return file_error([&] { (void)read_json(name); });
+    };
+    CHECK(message(nested(100)) == "no FileError");
+    CHECK(message("{\"a\":\n" + nested(100) + "}") == name + ":2: arrays and objects are nested more than 100 deep");
+    CHECK(message("{\"provenance\":" + nested(1000000) + "}") ==
+          name + ":1: arrays and objects are nested more than 100 deep");
+    CHECK(message("\"" + std::string(1000, '[') + "\\\"" + std::string(1000, '{') + "\"") == "no FileError"); // a text
+}
+
 TEST_CASE("a file that is missing, no JSON or beyond the scalar is refused with its name and line") {
     const ScratchFolder folder;
     const std::string name = (folder / "model.json").string();

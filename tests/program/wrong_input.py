@@ -9,7 +9,9 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 
+import h5py
 import numpy
 
 import bodies
@@ -27,13 +29,17 @@ def file_size_limit():
     resource.setrlimit(resource.RLIMIT_FSIZE, (2048, 2048))
 
 
+def memory_limit():
+    resource.setrlimit(resource.RLIMIT_AS, (600 << 20, 600 << 20))
+
+
 def refused(what, arguments, words, out=None, limit=None):
     """Runs the program and checks that it refuses with all of `words` in its one error line."""
     global failures
-    out = out or folder / "out" / what.replace(" ", "-")
+    out = folder / "out" / what.replace(" ", "-") if out is None else out
     before = {p for p in folder.rglob("*") if p.is_file()}
     result = subprocess.run([PROGRAM] + [str(a) for a in arguments] + ["--out", str(out)], capture_output=True,
-                            text=True, preexec_fn=limit)
+                            text=True, preexec_fn=limit, timeout=120)
     errors = [line for line in result.stderr.splitlines() if line.startswith("springfit: ")]
     left = {p for p in folder.rglob("*") if p.is_file()} - before
     problems = []
@@ -79,6 +85,24 @@ broken = {"format": "springfit-model", "version": 1, "dimension": 2, "units": "S
           "stable_time_step": 0.1, "provenance": {}}
 (folder / "surface.json").write_text(json.dumps(broken))
 refused("surface that names no node", ["simulate", folder / "surface.json"], ["surface.json", "/surface/nodes/1/0"])
+del broken["surface"]
+small = json.dumps(broken)
+(folder / "small.json").write_text(small)
+(folder / "no-nodes.json").write_text(small.replace("[[0, 0], [1, 0]]", "[]").replace("[1, 1]", "[]"))
+refused("model without nodes", ["simulate", folder / "no-nodes.json"], ["no-nodes.json", "/nodes/rest_position"])
+(folder / "far.json").write_text(small.replace('"nodes": [[0, 1]]', '"nodes": [[0, 2]]'))
+refused("spring to a node that is not there", ["simulate", folder / "far.json"], ["far.json", "/springs/nodes/0/1", "2"])
+(folder / "deep.json").write_text(small.replace('"provenance": {}', f'"provenance": {"[" * 1000000}{"]" * 1000000}'))
+refused("model nested deep", ["simulate", folder / "deep.json"], ["deep.json:1", "100 deep"])
+(folder / "lines.json").write_text(small.replace("SI", "S\\nI"))
+refused("text of two lines in a model", ["simulate", folder / "lines.json"], ["lines.json", "/units"])
+refused("output folder without a name", ["simulate", folder / "small.json"], ["--out"], out="")
+refused("output folder without a name for a fit", ["fit", cube, *MATERIAL], ["--out"], out="")
+refused("more frames than memory", ["simulate", folder / "small.json", "--frames", "2000000000"], ["--frames", "GB"])
+refused("frames that run out of memory", ["simulate", folder / "small.json", "--frames", "8000000"],
+        ["not enough memory", "small.json", "--frames 8000000"], limit=memory_limit)
+refused("steps without end", ["simulate", folder / "small.json", "--duration", "1e30"], ["--duration", "--frames"])
+refused("a time step of almost 0", ["simulate", folder / "small.json", "--time-step", "1e-300"], ["--time-step"])
 refused("missing model", ["simulate", folder / "none.json"], ["none.json"])
 (folder / "broken.json").write_text('{"format": "springfit-model", "version": 1, "dimension": 3')
 refused("broken model", ["simulate", folder / "broken.json"], ["broken.json"])
@@ -141,6 +165,29 @@ refused("missing column", ["fit", folder / "no-displacement.h5", *MATERIAL], ["/
 displacement[3, 2, 1] = numpy.inf
 bodies.write_motion(folder / "inf.h5", points, triangles, times, displacement)
 refused("infinity in a motion", ["fit", folder / "inf.h5", *MATERIAL], ["inf.h5", "/reference/displacement"])
+with h5py.File(folder / "strip.h5") as good, h5py.File(folder / "huge.h5", "w") as file:
+    good.copy("/time", file)
+    good.copy("/reference", file)
+    file.create_dataset("/mesh/points", (500000000, 2))
+refused("size without numbers", ["fit", folder / "huge.h5", *MATERIAL], ["huge.h5", "/mesh/points", "0 bytes"])
+with h5py.File(folder / "strip.h5") as good, h5py.File(folder / "linked.h5", "w") as file:
+    good.copy("/mesh", file)
+    good.copy("/time", file)
+    file["/reference/displacement"] = h5py.ExternalLink(str(folder / "strip.h5"), "/reference/displacement")
+refused("link to a file elsewhere", ["fit", folder / "linked.h5", *MATERIAL],
+        ["linked.h5", "/reference/displacement", "same folder"])
+(folder / "angles.xdmf").write_text("<Xdmf>" + "<" * 300000)
+refused("XDMF of nothing but angles", ["fit", folder / "angles.xdmf", *MATERIAL], ["angles.xdmf", "no HDF5 file"])
+(folder / "up.xdmf").write_text("<Xdmf><DataItem>../strip.h5:/mesh/points</DataItem></Xdmf>")
+refused("XDMF that leads elsewhere", ["fit", folder / "up.xdmf", *MATERIAL], ["up.xdmf", "../strip.h5"])
+# HDF5 1.10 crashes on a text that is longer than the heap it is in.
+with h5py.File(folder / "inf.h5", "r+") as file:
+    file.attrs["case"] = "a text in the global heap"
+damaged = bytearray((folder / "inf.h5").read_bytes())
+heap = damaged.index(b"GCOL")
+damaged[heap + 24:heap + 32] = b"\xff\xff\xff\x7f\x00\x00\x00\x00"
+(folder / "damaged.h5").write_bytes(damaged)
+refused("damaged HDF5", ["fit", folder / "damaged.h5", *MATERIAL], ["damaged.h5"])
 refused("pattern that no file matches", ["fit", folder / "none_*.h5", *MATERIAL], ["none_*.h5", "no such file"])
 refused("masses of the FEM reference", ["fit", cube, *MATERIAL, "--mass-from", folder / "broken.json"], ["--mass-from"])
 (folder / "mass.json").write_text('{"nodes": {"mass": [1, 2]}}')
@@ -160,5 +207,31 @@ refused("finer reference beside a recorded one",
         ["fit", cube, *MATERIAL, "--reference", folder / "strip.h5", "--nodes", "40", "--reference-nodes", "200"],
         ["--reference-nodes", "recorded motion"])
 refused("FEM option for a motion", ["fit", folder / "strip.h5", *MATERIAL, "--element", "tri6"], ["--element"])
+
+# Simulations that are whole, however stiff the model is, and what a signal leaves of one
+def simulated(what, arguments, exit_code, frames, signal_number=None):
+    """Runs a simulation, after a second sends it a signal, and checks exit code and frames."""
+    global failures
+    out = folder / "out" / what.replace(" ", "-")
+    process = subprocess.Popen([PROGRAM, "simulate", str(folder / "stiff.json"), *arguments, "--out", str(out)],
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    if signal_number is not None:
+        time.sleep(1)
+        process.send_signal(signal_number)
+    process.wait(timeout=120)
+    with h5py.File(out / "motion.h5") as file:
+        n_frames = len(file["/time"])
+    is_good = process.returncode == exit_code and n_frames in frames
+    print(f"{'ok' if is_good else 'FAILED':6} {what}: exit code {process.returncode}, {n_frames} frames")
+    failures += not is_good
+
+
+stiff = broken | {"nodes": broken["nodes"] | {"mass": [1e-3, 1e-3]},
+                  "springs": broken["springs"] | {"stiffness": [1e7]}}
+(folder / "stiff.json").write_text(json.dumps(stiff))
+simulated("more than a million steps in a frame", ["--duration", "20", "--frames", "4"], 0, [4])
+for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    simulated(f"a simulation that {number.name} ends", ["--duration", "1e7", "--frames", "1000000"], 130,
+              range(1, 1000000), number)
 
 sys.exit(1 if failures else 0)

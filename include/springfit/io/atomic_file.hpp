@@ -15,7 +15,7 @@ namespace springfit::io {
 /// Each file is first written in full under a temporary name in its own folder; `commit` flushes them all to the disk
 /// and then renames them. Until then a file of the same name stays what it was. Whatever goes wrong (full disk,
 /// unwritable folder, an exception elsewhere), no temporary is left behind, and files that were there before are there
-/// again.
+/// again. What a killed process left is removed by the next one that writes the same file on the same machine.
 ///
 ///     OutputGroup outputs;
 ///     write_model(outputs, folder / "model.json", model);
@@ -69,7 +69,8 @@ inline void write_file(const std::filesystem::path& target, std::string_view con
 /// Folders that it created and that are still empty when it goes out of scope are removed again.
 class OutputFolder {
 public:
-    /// Throws FileError where `path` is a file, cannot be created or cannot be written to.
+    /// Throws InvalidArgument for an empty name, FileError where `path` is a file, cannot be created or cannot be
+    /// written to.
     explicit OutputFolder(std::filesystem::path path);
     OutputFolder(const OutputFolder&) = delete;
     OutputFolder& operator=(const OutputFolder&) = delete;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,29 +13,14 @@
 /// Every error is a FileError that names file and dataset; HDF5 itself prints nothing.
 namespace springfit::io::hdf5 {
 
-/// Room on the disk for a file that is being written.
-///
-/// HDF5 1.10 cannot stand a failed write: the program crashes when it ends. So room is made, or found missing, before
-/// HDF5 writes; what it keeps in memory always has its place already.
-class ReservedSpace {
-public:
-    ReservedSpace(const std::filesystem::path& path, std::string shown);
-    /// Makes room for `bytes` more than HDF5 has given out so far in the file of `object`. Throws FileError on a full
-    /// disk.
-    void make(hid_t object, hsize_t bytes);
-    /// Gives back what was not used of a file that HDF5 has closed.
-    void trim(hsize_t size);
-
-private:
-    io::detail::Descriptor m_descriptor;
-    std::string m_name;
-    hsize_t m_size = 0;
-};
-
-/// An open file. Reading converts between number types; text where numbers are expected is refused.
+/// An open file. Reading converts between number types (a number beyond the range of the wanted type becomes the end of
+/// that range); text where numbers are expected is refused.
 class File {
 public:
-    /// Truncates the file `path`; errors name `shown`, the file that it is to become.
+    /// A new file, in memory until `close` writes it to `path`; errors name `shown`, the file that it is to become.
+    ///
+    /// HDF5 1.10 does not write to the disk by itself, since it cannot stand a write that fails: it tries again when
+    /// the program ends, and crashes there.
     [[nodiscard]] static File create(const std::filesystem::path& path, std::string shown);
     [[nodiscard]] static File open(const std::filesystem::path& path);
     /// True where the file exists and is of this format.
@@ -44,6 +28,9 @@ public:
 
     [[nodiscard]] const std::string& name() const noexcept { return m_name; }
     [[nodiscard]] bool has(const std::string& dataset) const;
+    /// Empty for a single number. What a file was read for can be allocated by it: a shape that promises more than the
+    /// file holds is refused, as are numbers that are in another file and links to other files, but for those in the
+    /// same folder or below it.
     [[nodiscard]] Shape shape(const std::string& dataset) const;
 
     /// Writes a whole array.
@@ -54,9 +41,10 @@ public:
     template <class T>
     void read(const std::string& dataset, T* values, const Shape& expected) const;
 
-    /// Reads one entry of the slowest axis of an array, `row < shape[0]`.
-    template <class T>
-    void read_row(const std::string& dataset, hsize_t row, T* values) const;
+    /// Reads an array of this shape and calls `take(row, values)` for each entry of its slowest axis, in order, with a
+    /// `const T*`. In memory is no more of it than its chunks ask for.
+    template <class T, class Take>
+    void read_rows(const std::string& dataset, const Shape& expected, const Take& take) const;
 
     /// Makes `view` show one row `[n x m]` of a dataset `[rows x n x m]` in this file, without a copy, with columns of
     /// zeros added up to `columns`.
@@ -66,22 +54,23 @@ public:
     /// A text attribute, where there is one.
     [[nodiscard]] std::optional<std::string> attribute(const std::string& object, const std::string& attribute) const;
 
-    /// Completes a created file, after all series in it were closed. Throws where that fails.
+    /// Writes a created file to the disk, after all series in it were closed. Throws FileError where that fails.
     void close();
 
     [[noreturn]] void refuse(const std::string& dataset, std::string_view problem) const;
 
 private:
     friend class Series;
-    File(Handle file, std::shared_ptr<ReservedSpace> room, std::string name)
-        : m_file(std::move(file)), m_reserved(std::move(room)), m_name(std::move(name)) {}
-    void make_room(hsize_t bytes) const { m_reserved->make(m_file.get(), bytes); }
+    File(Handle file, std::filesystem::path created, std::string name)
+        : m_file(std::move(file)), m_created(std::move(created)), m_name(std::move(name)) {}
+    /// Refuses the dataset where there is a problem.
+    void accept(const std::string& dataset, const std::string& problem) const;
     [[nodiscard]] Handle open_dataset(const std::string& dataset) const;
     [[nodiscard]] Handle create_dataset(const std::string& dataset, hid_t type, hid_t space, hid_t properties,
                                         hid_t access) const;
 
     Handle m_file;
-    std::shared_ptr<ReservedSpace> m_reserved; ///< of a created file
+    std::filesystem::path m_created; ///< where `close` writes it to; empty: the file was opened
     std::string m_name;
 };
 
@@ -98,8 +87,6 @@ public:
 
 private:
     std::string m_file;
-    std::shared_ptr<ReservedSpace> m_reserved;
-    hsize_t m_row_bytes = sizeof(double);
     std::string m_name;
     Shape m_row;
     hsize_t m_rows = 0;

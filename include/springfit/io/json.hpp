@@ -10,7 +10,8 @@
 
 namespace springfit::io {
 
-/// The whole of a file as JSON. Throws FileError with the line where it is none, and for a file that cannot be read.
+/// The whole of a file as JSON. Throws FileError with the line where it is none or is nested more than 100 deep, and
+/// for a file that cannot be read. O(size).
 [[nodiscard]] Json read_json(const std::filesystem::path& path);
 
 /// Text with one line per member of an object, and arrays of numbers, however long, on one line. Numbers are the

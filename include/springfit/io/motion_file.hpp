@@ -102,6 +102,10 @@ struct RecordedMotion {
 /// The dimension, 2 or 3, of the motion in a `.h5` or `.xdmf` file. Throws FileError.
 [[nodiscard]] int read_motion_dimension(const std::filesystem::path& path);
 
+/// Reads every array and text that `read_motion` may read, and keeps nothing: a trial for a process of its own, since
+/// HDF5 crashes, or does not come to an end, on some damaged files. Throws FileError.
+void scan_motion(const std::filesystem::path& path);
+
 /// Reads a motion from its HDF5 file or from the XDMF file that points to it, written by this or any other program in
 /// the layout of docs/files.md. Missing velocities and accelerations are differenced (`differences.hpp`).
 /// Throws FileError naming the array that is missing, has the wrong shape, or holds what no motion can.

@@ -11,7 +11,7 @@ struct RecordOptions {
     Scalar dt = Scalar(0.01);    ///< time between frames, s, > 0
     int frames = 50;             ///< frames to record, the start included, >= 1
     int steps_per_frame = 1;     ///< steps of dt / steps_per_frame between two frames, >= 1
-    ProgressCallback progress{}; ///< called once per frame; returning false stops with the frames so far
+    ProgressCallback progress{}; ///< called once per step; returning false stops with the frames so far
 };
 
 /// The result of a recording.
@@ -80,6 +80,11 @@ template <Stepper S>
                 recording.status = Status::diverged;
             }
             if (recording.status != Status::converged) {
+                return recording;
+            }
+            const double steps_done = frame + static_cast<double>(s + 1) / options.steps_per_frame;
+            if (s + 1 < options.steps_per_frame && !go_on(options.progress, "record", steps_done / options.frames)) {
+                recording.status = Status::interrupted;
                 return recording;
             }
         }

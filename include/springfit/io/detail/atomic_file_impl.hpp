@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <system_error>
 #include <utility>
 
 #include <fcntl.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <springfit/io/atomic_file.hpp>
@@ -41,16 +44,51 @@ private:
     int m_descriptor;
 };
 
-/// A hidden name beside `target` that no other file has at the time, `.model.json.4711-0.partial`.
+/// The name of this machine: process numbers of another one, on a shared disk, mean nothing here.
+[[nodiscard]] inline std::string host_name() {
+    std::array<char, 256> name{};
+    return ::gethostname(name.data(), name.size() - 1) == 0 ? std::string(name.data()) : std::string("host");
+}
+
+/// `.model.json.`, with which the hidden names beside `model.json` begin.
+[[nodiscard]] inline std::string hidden_beginning(const std::filesystem::path& target) {
+    return text('.', target.filename().string(), '.');
+}
+
+/// A hidden name beside `target` that no other file has at the time, `.model.json.4711-0.host.partial`.
 [[nodiscard]] inline std::filesystem::path name_beside(const std::filesystem::path& target, std::string_view ending) {
     static std::atomic<unsigned> counter{0};
     for (;;) {
         auto name = target;
         name.replace_filename(
-            text('.', target.filename().string(), '.', ::getpid(), '-', counter.fetch_add(1), '.', ending));
+            text(hidden_beginning(target), ::getpid(), '-', counter.fetch_add(1), '.', host_name(), '.', ending));
         std::error_code error;
         if (std::filesystem::symlink_status(name, error).type() == std::filesystem::file_type::not_found || error) {
             return name;
+        }
+    }
+}
+
+/// Removes the temporary files of `target` whose process on this machine lives no more: those of runs that were killed.
+inline void remove_leftovers(const std::filesystem::path& target) {
+    const std::string beginning = hidden_beginning(target);
+    const std::string ending = text('.', host_name(), ".partial");
+    const auto folder = target.parent_path();
+    std::error_code error;
+    for (std::filesystem::directory_iterator entry(folder.empty() ? "." : folder, error), end; !error && entry != end;
+         entry.increment(error)) {
+        const std::string name = entry->path().filename().string();
+        if (!name.starts_with(beginning) || !name.ends_with(ending) ||
+            name.size() <= beginning.size() + ending.size()) {
+            continue;
+        }
+        const std::string number = name.substr(beginning.size(), name.size() - beginning.size() - ending.size());
+        pid_t process = 0;
+        const char* const last = number.data() + number.size();
+        const auto [after, problem] = std::from_chars(number.data(), last, process);
+        if (problem == std::errc{} && after != last && *after == '-' && process > 0 && ::kill(process, 0) != 0 &&
+            errno == ESRCH) {
+            ::unlink(entry->path().c_str());
         }
     }
 }
@@ -78,6 +116,7 @@ inline std::filesystem::path OutputGroup::add(const std::filesystem::path& targe
     for (const File& file : m_files) {
         require(file.target != target, "output file", "a name that is not in the group yet", target.string());
     }
+    detail::remove_leftovers(target);
     auto temporary = detail::name_beside(target, "partial");
     detail::Descriptor descriptor(temporary, O_WRONLY | O_CREAT | O_EXCL);
     if (!descriptor.is_open()) {
@@ -103,6 +142,7 @@ inline void OutputGroup::remove(const std::filesystem::path& target) {
     for (const File& file : m_files) {
         require(file.target != target, "output file", "a name that is not in the group yet", target.string());
     }
+    detail::remove_leftovers(target);
     m_files.push_back({target, {}, {}, false});
 }
 
@@ -187,6 +227,7 @@ inline void OutputGroup::discard() noexcept {
 }
 
 inline OutputFolder::OutputFolder(std::filesystem::path path) : m_path(std::move(path)) {
+    require(!m_path.empty(), "output folder", "a name", "none");
     std::error_code error;
     auto missing = std::filesystem::absolute(m_path, error).lexically_normal();
     if (!missing.has_filename()) {
@@ -198,7 +239,7 @@ inline OutputFolder::OutputFolder(std::filesystem::path path) : m_path(std::move
         missing = missing.parent_path();
     }
     if (!std::filesystem::is_directory(missing, error)) {
-        throw FileError(m_path.string(), missing == std::filesystem::absolute(m_path).lexically_normal()
+        throw FileError(m_path.string(), missing == std::filesystem::absolute(m_path, error).lexically_normal()
                                              ? "cannot be the output folder: it is a file"
                                              : text("cannot be the output folder: ", missing.string(), " is a file"));
     }

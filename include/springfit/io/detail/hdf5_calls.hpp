@@ -104,8 +104,9 @@ template <class T>
     } else if constexpr (std::is_same_v<T, float>) {
         return H5T_NATIVE_FLOAT;
     } else {
-        static_assert(std::is_same_v<T, int>, "arrays of double, float and int");
-        return H5T_NATIVE_INT;
+        static_assert(std::is_same_v<T, int> || std::is_same_v<T, long long>,
+                      "arrays of double, float, int, long long");
+        return std::is_same_v<T, int> ? H5T_NATIVE_INT : H5T_NATIVE_LLONG;
     }
 }
 

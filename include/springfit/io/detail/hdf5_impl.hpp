@@ -7,65 +7,21 @@
 #include <unistd.h>
 
 #include <springfit/io/detail/atomic_file_impl.hpp>
+#include <springfit/io/detail/hdf5_checks.hpp>
 #include <springfit/io/hdf5.hpp>
 
 namespace springfit::io::hdf5 {
 
-namespace detail {
-
-/// Refuses what cannot be read as numbers of type T.
-template <class T>
-void check_type(const File& file, const std::string& dataset, const Handle& handle) {
-    const Handle type(H5Dget_type(handle.get()), H5Tclose);
-    const H5T_class_t found = H5Tget_class(type.get());
-    const bool accepted = found == H5T_INTEGER || (std::is_floating_point_v<T> && found == H5T_FLOAT);
-    if (!accepted) {
-        file.refuse(dataset, std::is_floating_point_v<T> ? "expected numbers" : "expected whole numbers");
-    }
-}
-
-} // namespace detail
-
-inline ReservedSpace::ReservedSpace(const std::filesystem::path& path, std::string shown)
-    : m_descriptor(path, O_RDWR | O_CREAT), m_name(std::move(shown)) {
-    if (!m_descriptor.is_open()) {
-        throw FileError(m_name, text("cannot be created: ", io::detail::reason(errno)));
-    }
-}
-
-inline void ReservedSpace::make(hid_t object, hsize_t bytes) {
-    haddr_t given_out = 0;
-    if (object >= 0) {
-        const Handle file(H5Iget_file_id(object), H5Fclose);
-        H5Fget_eoa(file.get(), &given_out);
-    }
-    constexpr hsize_t beside = 1 << 20; // HDF5's own notes, and a chunk of each series that is still in memory
-    const hsize_t size = given_out + bytes + beside;
-    if (size <= m_size) {
-        return;
-    }
-    if (const int error = ::posix_fallocate(m_descriptor.get(), 0, static_cast<off_t>(size)); error != 0) {
-        throw FileError(m_name, text("cannot be written: ", io::detail::reason(error)));
-    }
-    m_size = size;
-}
-
-inline void ReservedSpace::trim(hsize_t size) {
-    if (::ftruncate(m_descriptor.get(), static_cast<off_t>(size)) != 0) {
-        throw FileError(m_name, text("cannot be written: ", io::detail::reason(errno)));
-    }
-}
-
 inline File File::create(const std::filesystem::path& path, std::string shown) {
     const detail::Quiet quiet;
-    ReservedSpace(path, shown).make(-1, 0);
-    Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    constexpr std::size_t growth = 1 << 20;
+    H5Pset_fapl_core(access.get(), growth, false);
+    Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose);
     if (!file.is_open()) {
         throw FileError(shown, text("cannot be created: ", detail::last_error()));
     }
-    auto room = std::make_shared<ReservedSpace>(path, shown); // truncated with the file: made anew
-    room->make(file.get(), 0);
-    return {std::move(file), std::move(room), std::move(shown)};
+    return {std::move(file), path, std::move(shown)};
 }
 
 inline File File::open(const std::filesystem::path& path) {
@@ -81,19 +37,24 @@ inline File File::open(const std::filesystem::path& path) {
     if (!file.is_open()) {
         throw FileError(path.string(), text("cannot be read: ", detail::last_error()));
     }
-    return {std::move(file), nullptr, path.string()};
+    return {std::move(file), {}, path.string()};
 }
 
 inline bool File::is_hdf5(const std::filesystem::path& path) {
     const detail::Quiet quiet;
-    return H5Fis_hdf5(path.c_str()) > 0;
+    std::error_code error;
+    return std::filesystem::is_regular_file(path, error) && H5Fis_hdf5(path.c_str()) > 0;
 }
 
 inline bool File::has(const std::string& dataset) const {
     const detail::Quiet quiet;
+    const detail::LinkGuard links;
     for (std::size_t end = 0; end != std::string::npos;) {
         end = dataset.find('/', end + 1);
-        if (H5Lexists(m_file.get(), dataset.substr(0, end).c_str(), H5P_DEFAULT) <= 0) {
+        if (H5Lexists(m_file.get(), dataset.substr(0, end).c_str(), links.access()) <= 0) {
+            if (!links.refusal().empty()) {
+                refuse(dataset, links.refusal());
+            }
             return false;
         }
     }
@@ -105,9 +66,13 @@ inline Handle File::open_dataset(const std::string& dataset) const {
         refuse(dataset, "is missing");
     }
     const detail::Quiet quiet;
-    Handle handle(H5Dopen2(m_file.get(), dataset.c_str(), H5P_DEFAULT), H5Dclose);
+    const detail::LinkGuard links;
+    Handle handle(H5Dopen2(m_file.get(), dataset.c_str(), links.access()), H5Dclose);
     if (!handle.is_open()) {
-        refuse(dataset, text("cannot be read: ", detail::last_error()));
+        refuse(dataset, links.refusal().empty() ? text("cannot be read: ", detail::last_error()) : links.refusal());
+    }
+    if (m_created.empty()) { // not of this program's own making
+        accept(dataset, detail::storage_problem(handle));
     }
     return handle;
 }
@@ -116,6 +81,7 @@ inline Handle File::create_dataset(const std::string& dataset, hid_t type, hid_t
                                    hid_t access) const {
     const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
     H5Pset_create_intermediate_group(links.get(), 1);
+    H5Pset_obj_track_times(properties, false); // the same motion makes the same bytes
     Handle handle(H5Dcreate2(m_file.get(), dataset.c_str(), type, space, links.get(), properties, access), H5Dclose);
     if (!handle.is_open()) {
         refuse(dataset, text("cannot be written: ", detail::last_error()));
@@ -130,13 +96,9 @@ inline Shape File::shape(const std::string& dataset) const {
 template <class T>
 void File::write(const std::string& dataset, const T* values, const Shape& shape) {
     const detail::Quiet quiet;
-    hsize_t bytes = sizeof(double);
-    for (const hsize_t size : shape) {
-        bytes *= size;
-    }
-    make_room(bytes);
     const Handle space = detail::simple_space(shape, shape);
-    Handle handle = create_dataset(dataset, detail::file_type<T>(), space.get(), H5P_DEFAULT, H5P_DEFAULT);
+    const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    Handle handle = create_dataset(dataset, detail::file_type<T>(), space.get(), properties.get(), H5P_DEFAULT);
     const bool empty = std::find(shape.begin(), shape.end(), hsize_t(0)) != shape.end();
     if (!empty && H5Dwrite(handle.get(), detail::memory_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) {
         refuse(dataset, text("cannot be written: ", detail::last_error()));
@@ -150,7 +112,7 @@ template <class T>
 void File::read(const std::string& dataset, T* values, const Shape& expected) const {
     const Handle handle = open_dataset(dataset);
     const detail::Quiet quiet;
-    detail::check_type<T>(*this, dataset, handle);
+    accept(dataset, detail::type_problem<T>(handle));
     if (const Shape found = detail::shape_of(handle); found != expected) {
         refuse(dataset, text("expected ", to_text(expected), ", found ", to_text(found)));
     }
@@ -159,29 +121,48 @@ void File::read(const std::string& dataset, T* values, const Shape& expected) co
     }
 }
 
-template <class T>
-void File::read_row(const std::string& dataset, hsize_t row, T* values) const {
+template <class T, class Take>
+void File::read_rows(const std::string& dataset, const Shape& expected, const Take& take) const {
     const Handle handle = open_dataset(dataset);
     const detail::Quiet quiet;
-    detail::check_type<T>(*this, dataset, handle);
-    Shape count = detail::shape_of(handle);
-    Shape start(count.size(), 0);
-    if (count.empty() || !(row < count[0])) {
-        refuse(dataset, text("has no row ", row));
+    accept(dataset, detail::type_problem<T>(handle));
+    Shape shape = detail::shape_of(handle);
+    if (shape != expected) {
+        refuse(dataset, text("expected ", to_text(expected), ", found ", to_text(shape)));
     }
-    start[0] = row;
-    count[0] = 1;
+    if (shape.empty()) {
+        shape.push_back(1); // a single number
+    }
+    hsize_t row_size = 1;
+    for (std::size_t axis = 1; axis < shape.size(); ++axis) {
+        row_size *= shape[axis];
+    }
+    // Each chunk is read once; of what is not in chunks so much that calls cost nothing.
+    const Handle properties(H5Dget_create_plist(handle.get()), H5Pclose);
+    const Shape chunk = detail::chunk_of(properties.get());
+    const hsize_t at_once = chunk.empty() ? std::max<hsize_t>(1, 8192 / std::max<hsize_t>(1, row_size)) : chunk[0];
     const Handle in_file(H5Dget_space(handle.get()), H5Sclose);
-    const Handle in_memory = detail::simple_space(count, count);
-    if (H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) < 0 ||
-        H5Dread(handle.get(), detail::memory_type<T>(), in_memory.get(), in_file.get(), H5P_DEFAULT, values) < 0) {
-        refuse(dataset, text("cannot be read: ", detail::last_error()));
+    std::vector<T> values;
+    Shape start(shape.size(), 0);
+    Shape count = shape;
+    for (; start[0] < shape[0] && row_size > 0; start[0] += count[0]) {
+        count[0] = std::min(at_once, shape[0] - start[0]);
+        values.resize(count[0] * row_size);
+        const Handle in_memory = detail::simple_space(count, count);
+        const bool selected = expected.empty() || H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, start.data(),
+                                                                      nullptr, count.data(), nullptr) >= 0;
+        if (!selected || H5Dread(handle.get(), detail::memory_type<T>(), in_memory.get(), in_file.get(), H5P_DEFAULT,
+                                 values.data()) < 0) {
+            refuse(dataset, text("cannot be read: ", detail::last_error()));
+        }
+        for (hsize_t row = 0; row < count[0]; ++row) {
+            take(static_cast<std::size_t>(start[0] + row), values.data() + row * row_size);
+        }
     }
 }
 
 inline void File::write_view(const std::string& view, const std::string& dataset, hsize_t row, hsize_t columns) {
     const detail::Quiet quiet;
-    make_room(0);
     const Shape source_shape = shape(dataset);
     const Shape view_shape{source_shape[1], columns};
     const Shape start{row, 0, 0};
@@ -202,7 +183,6 @@ inline void File::write_view(const std::string& view, const std::string& dataset
 
 inline void File::write_attribute(const std::string& object, const std::string& attribute, const std::string& value) {
     const detail::Quiet quiet;
-    make_room(value.size());
     const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
     H5Tset_size(type.get(), H5T_VARIABLE);
     H5Tset_cset(type.get(), H5T_CSET_UTF8);
@@ -218,10 +198,11 @@ inline void File::write_attribute(const std::string& object, const std::string& 
 
 inline std::optional<std::string> File::attribute(const std::string& object, const std::string& attribute) const {
     const detail::Quiet quiet;
-    if (H5Aexists_by_name(m_file.get(), object.c_str(), attribute.c_str(), H5P_DEFAULT) <= 0) {
+    const detail::LinkGuard links;
+    if (H5Aexists_by_name(m_file.get(), object.c_str(), attribute.c_str(), links.access()) <= 0) {
         return std::nullopt;
     }
-    const Handle handle(H5Aopen_by_name(m_file.get(), object.c_str(), attribute.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+    const Handle handle(H5Aopen_by_name(m_file.get(), object.c_str(), attribute.c_str(), H5P_DEFAULT, links.access()),
                         H5Aclose);
     const Handle type(handle.is_open() ? H5Aget_type(handle.get()) : -1, H5Tclose);
     const Handle space(handle.is_open() ? H5Aget_space(handle.get()) : -1, H5Sclose);
@@ -237,6 +218,10 @@ inline std::optional<std::string> File::attribute(const std::string& object, con
         H5free_memory(content);
         return value;
     }
+    constexpr std::size_t longest = 65536; // what an attribute can have in its object's header
+    if (H5Tget_size(type.get()) > longest) {
+        return std::nullopt;
+    }
     std::string value(H5Tget_size(type.get()), '\0');
     if (H5Aread(handle.get(), type.get(), value.data()) < 0) {
         return std::nullopt;
@@ -246,12 +231,29 @@ inline std::optional<std::string> File::attribute(const std::string& object, con
 
 inline void File::close() {
     const detail::Quiet quiet;
-    make_room(0);
-    haddr_t size = 0;
-    if (H5Fflush(m_file.get(), H5F_SCOPE_GLOBAL) < 0 || H5Fget_eoa(m_file.get(), &size) < 0 || !m_file.close()) {
+    const bool is_flushed = H5Fflush(m_file.get(), H5F_SCOPE_GLOBAL) >= 0;
+    const ssize_t size = is_flushed ? H5Fget_file_image(m_file.get(), nullptr, 0) : -1;
+    void* content = nullptr; // points to where the file is in memory
+    if (size < 0 || H5Fget_vfd_handle(m_file.get(), H5P_DEFAULT, &content) < 0) {
         throw FileError(m_name, text("cannot be written: ", detail::last_error()));
     }
-    m_reserved->trim(size);
+    io::detail::Descriptor disk(m_created, O_WRONLY | O_CREAT | O_TRUNC);
+    if (!disk.is_open()) {
+        throw FileError(m_name, text("cannot be created: ", io::detail::reason(errno)));
+    }
+    io::detail::write_all(disk, {*static_cast<const char**>(content), static_cast<std::size_t>(size)}, m_name);
+    if (!disk.close()) {
+        throw FileError(m_name, text("cannot be written: ", io::detail::reason(errno)));
+    }
+    if (!m_file.close()) {
+        throw FileError(m_name, text("cannot be closed: ", detail::last_error()));
+    }
+}
+
+inline void File::accept(const std::string& dataset, const std::string& problem) const {
+    if (!problem.empty()) {
+        refuse(dataset, problem);
+    }
 }
 
 inline void File::refuse(const std::string& dataset, std::string_view problem) const {

@@ -8,13 +8,14 @@
 namespace springfit::io::hdf5 {
 
 inline Series::Series(const File& file, std::string dataset, Shape row)
-    : m_file(file.name()), m_reserved(file.m_reserved), m_name(std::move(dataset)), m_row(std::move(row)) {
+    : m_file(file.name()), m_name(std::move(dataset)), m_row(std::move(row)) {
     const detail::Quiet quiet;
+    hsize_t row_bytes = sizeof(double);
     for (const hsize_t size : m_row) {
-        m_row_bytes *= std::max<hsize_t>(size, 1);
+        row_bytes *= std::max<hsize_t>(size, 1);
     }
     constexpr hsize_t chunk_bytes = 65536; // of small rows there are several in a chunk
-    Shape chunk{std::max<hsize_t>(1, chunk_bytes / m_row_bytes)};
+    Shape chunk{std::max<hsize_t>(1, chunk_bytes / row_bytes)};
     Shape shape{0};
     Shape maximum{H5S_UNLIMITED};
     for (const hsize_t size : m_row) {
@@ -26,15 +27,13 @@ inline Series::Series(const File& file, std::string dataset, Shape row)
     const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     H5Pset_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data());
     const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
-    H5Pset_chunk_cache(access.get(), 1, chunk_bytes, H5D_CHUNK_CACHE_W0_DEFAULT); // see ReservedSpace::make
-    file.make_room(0);
+    H5Pset_chunk_cache(access.get(), 1, chunk_bytes, H5D_CHUNK_CACHE_W0_DEFAULT); // one chunk
     m_dataset = file.create_dataset(m_name, H5T_IEEE_F64LE, space.get(), properties.get(), access.get());
 }
 
 template <class T>
 void Series::append(const T* values) {
     const detail::Quiet quiet;
-    m_reserved->make(m_dataset.get(), m_row_bytes);
     Shape shape{m_rows + 1};
     Shape start{m_rows};
     Shape count{1};
@@ -60,7 +59,6 @@ void Series::append(const T* values) {
 
 inline void Series::close() {
     const detail::Quiet quiet;
-    m_reserved->make(m_dataset.get(), m_row_bytes);
     if (!m_dataset.close()) {
         throw FileError(m_file, text(m_name, ": cannot be written: ", detail::last_error()));
     }

@@ -49,8 +49,35 @@ inline void append_json(std::string& result, const Json& value, int depth, std::
 
 } // namespace detail
 
+namespace detail {
+
+/// Refuses arrays and objects that are nested deeper than any use of them: code that walks through them recurses.
+inline void check_depth(const std::filesystem::path& path, std::string_view content) {
+    constexpr int deepest = 100;
+    int depth = 0;
+    bool in_string = false;
+    for (std::size_t i = 0; i < content.size(); ++i) {
+        const char c = content[i];
+        if (in_string) {
+            i += c == '\\' ? 1 : 0;
+            in_string = c != '"';
+        } else if (c == '"') {
+            in_string = true;
+        } else if (c == ']' || c == '}') {
+            --depth;
+        } else if ((c == '[' || c == '{') && ++depth > deepest) {
+            const auto line = 1 + std::count(content.begin(), content.begin() + static_cast<std::ptrdiff_t>(i), '\n');
+            throw FileError(path.string(), static_cast<long>(line),
+                            text("arrays and objects are nested more than ", deepest, " deep"));
+        }
+    }
+}
+
+} // namespace detail
+
 inline Json read_json(const std::filesystem::path& path) {
     const std::string content = detail::read_text(path);
+    detail::check_depth(path, content);
     try {
         return Json::parse(content);
     } catch (const Json::parse_error& error) {
@@ -125,7 +152,12 @@ inline std::string JsonPlace::found() const {
     if (m_value->is_array()) {
         return text("an array of ", m_value->size());
     }
-    return m_value->is_object() ? "an object" : m_value->dump();
+    if (m_value->is_object()) {
+        return "an object";
+    }
+    constexpr std::size_t longest = 60;
+    std::string value = m_value->dump(-1, ' ', true); // ASCII: cut anywhere
+    return value.size() <= longest ? value : value.substr(0, longest) + "...";
 }
 
 } // namespace springfit::io

@@ -83,6 +83,9 @@ template <std::floating_point Scalar>
 template <int Dim, std::floating_point Scalar>
 [[nodiscard]] Points<Dim, Scalar> read_positions(const JsonPlace& place, std::string_view owner) {
     const auto n = static_cast<Index>(place.array_size(text("an array, one position per ", owner)));
+    if (n == 0 || n > std::numeric_limits<int>::max()) {
+        place.refuse(text("an array, one position per ", owner, ", at least one"), place.found());
+    }
     Points<Dim, Scalar> positions(Dim, n);
     for (Index i = 0; i < n; ++i) {
         const JsonPlace position = place.element(static_cast<std::size_t>(i));
@@ -124,7 +127,9 @@ template <int Dim, std::floating_point Scalar>
     for (Index e = 0; e < n_springs; ++e) {
         const JsonPlace pair = ends.element(static_cast<std::size_t>(e));
         (void)pair.array_size("an array of 2, the ends of the spring", 2);
-        network.springs.col(e) << pair.element(0).index_below(n_nodes), pair.element(1).index_below(n_nodes);
+        for (int end = 0; end < 2; ++end) {
+            network.springs(end, e) = pair.element(static_cast<std::size_t>(end)).index_below(n_nodes);
+        }
         if (network.springs(0, e) == network.springs(1, e)) {
             pair.refuse("two different nodes", pair.value().dump());
         }

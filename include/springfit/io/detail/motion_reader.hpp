@@ -50,21 +50,25 @@ struct MotionSource {
     return static_cast<int>(shape[1]);
 }
 
-/// Whole numbers [rows x columns], each the number of a node.
+/// Whole numbers [rows x columns], each the number of a node: a column of the result for each row. Numbers along one
+/// axis, or one number alone, are as many rows of one.
 [[nodiscard]] inline Eigen::MatrixXi read_node_numbers(const hdf5::File& file, const std::string& dataset,
                                                        Index n_nodes) {
     const hdf5::Shape shape = file.shape(dataset);
-    const auto columns = static_cast<Index>(shape.size() > 1 ? shape[1] : 1);
-    Eigen::MatrixXi numbers(columns, static_cast<Index>(shape[0]));
-    file.read(dataset, numbers.data(), shape);
-    for (Index c = 0; c < numbers.cols(); ++c) {
-        for (Index r = 0; r < numbers.rows(); ++r) {
-            if (!(numbers(r, c) >= 0 && numbers(r, c) < n_nodes)) {
-                file.refuse(dataset,
-                            text("expected node numbers in [0, ", n_nodes, "), found ", numbers(r, c), " in row ", c));
-            }
-        }
+    if (shape.size() > 2) {
+        file.refuse(dataset, text("expected a list of node numbers, found ", hdf5::to_text(shape)));
     }
+    const auto columns = static_cast<Index>(shape.size() > 1 ? shape[1] : 1);
+    Eigen::MatrixXi numbers(columns, static_cast<Index>(shape.empty() ? 1 : shape[0]));
+    file.read_rows<long long>(dataset, shape, [&](std::size_t row, const long long* values) {
+        for (Index r = 0; r < columns; ++r) {
+            if (!(values[r] >= 0 && values[r] < n_nodes)) {
+                file.refuse(dataset,
+                            text("expected node numbers in [0, ", n_nodes, "), found ", values[r], " in row ", row));
+            }
+            numbers(r, static_cast<Index>(row)) = static_cast<int>(values[r]);
+        }
+    });
     return numbers;
 }
 
@@ -144,18 +148,18 @@ template <int Dim, std::floating_point Scalar>
         file.refuse(dataset, text("expected ", hdf5::to_text(expected), ", frames x nodes x dimension, found ",
                                   hdf5::to_text(found)));
     }
-    std::vector<Points<Dim, Scalar>> frames(n_frames, Points<Dim, Scalar>(Dim, n_nodes));
-    for (std::size_t t = 0; t < n_frames; ++t) {
-        file.read_row(dataset, t, frames[t].data());
+    std::vector<Points<Dim, Scalar>> frames;
+    file.read_rows<Scalar>(dataset, expected, [&](std::size_t t, const Scalar* values) {
+        frames.emplace_back(Eigen::Map<const Points<Dim, Scalar>>(values, Dim, n_nodes));
         for (Index i = 0; i < n_nodes; ++i) {
-            const auto values = frames[t].col(i).array();
-            const bool is_good = rule == NotANumber::unobserved ? !values.isInf().any() : values.isFinite().all();
+            const auto node = frames.back().col(i).array();
+            const bool is_good = rule == NotANumber::unobserved ? !node.isInf().any() : node.isFinite().all();
             if (!is_good) {
                 file.refuse(dataset,
                             text("expected finite values, found one that is not at node ", i, " in frame ", t));
             }
         }
-    }
+    });
     return frames;
 }
 
@@ -163,6 +167,19 @@ template <int Dim, std::floating_point Scalar>
 
 inline int read_motion_dimension(const std::filesystem::path& path) {
     return detail::motion_dimension(detail::open_motion(path).file);
+}
+
+inline void scan_motion(const std::filesystem::path& path) {
+    const hdf5::File file = detail::open_motion(path).file;
+    (void)file.attribute("/", "case");
+    for (const char* dataset :
+         {"/mesh/points", "/mesh/cells", "/mesh/clamped", "/springs", "/time", "/reference/displacement",
+          "/reference/velocity", "/reference/acceleration", "/reference/force"}) {
+        if (file.has(dataset)) {
+            (void)file.attribute(dataset, "kind");
+            file.read_rows<double>(dataset, file.shape(dataset), [](std::size_t, const double*) {});
+        }
+    }
 }
 
 template <int Dim, std::floating_point Scalar>
@@ -198,6 +215,11 @@ RecordedMotion<Dim, Scalar> read_motion(const std::filesystem::path& path) {
         return detail::read_frames<Dim, Scalar>(file, dataset, motion.times.size(), n_nodes, rule);
     };
     motion.positions = read("/reference/displacement", detail::NotANumber::unobserved);
+    const bool is_seen = std::any_of(motion.positions.begin(), motion.positions.end(),
+                                     [](const auto& frame) { return frame.array().isFinite().colwise().all().any(); });
+    if (!is_seen) {
+        file.refuse("/reference/displacement", "expected a node that was seen, found no number in any frame");
+    }
     motion.unobserved = fill_gaps<Dim, Scalar>(motion.rest_positions, motion.times, motion.positions);
     const bool has_velocity = file.has("/reference/velocity");
     if (has_velocity) {
@@ -212,6 +234,13 @@ RecordedMotion<Dim, Scalar> read_motion(const std::filesystem::path& path) {
         motion.accelerations = has_velocity ? differentiate<Dim, Scalar>(motion.times, motion.velocities, 1)
                                             : differentiate<Dim, Scalar>(motion.times, motion.positions, 2);
         result.differenced.emplace_back("acceleration");
+    }
+    for (std::size_t t = 0; t < motion.times.size(); ++t) {
+        if (!motion.velocities[t].allFinite() || !motion.accelerations[t].allFinite()) {
+            file.refuse("/time",
+                        text("expected times so far apart that velocities and accelerations are finite, found ",
+                             motion.times[t], " in frame ", t));
+        }
     }
     result.forces_recorded = file.has("/reference/force");
     motion.external_forces =

@@ -11,14 +11,17 @@
 
 namespace springfit::io::detail {
 
-/// The whole of a file. Throws FileError where it is missing, a folder, or cannot be read.
+/// The whole of a file, or of a pipe. Throws FileError where it is missing, a folder, a device, or cannot be read.
 [[nodiscard]] inline std::string read_text(const std::filesystem::path& path) {
     std::error_code error;
     if (!std::filesystem::exists(path, error)) {
-        throw FileError(path.string(), "no such file");
+        throw FileError(path.empty() ? "\"\"" : path.string(), "no such file");
     }
     if (std::filesystem::is_directory(path, error)) {
         throw FileError(path.string(), "is a folder, not a file");
+    }
+    if (std::filesystem::is_character_file(path, error) || std::filesystem::is_block_file(path, error)) {
+        throw FileError(path.string(), "is a device, not a file");
     }
     std::ifstream stream(path, std::ios::binary);
     std::string content{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <springfit/io/cell_kind.hpp>
+#include <springfit/io/detail/file_reference.hpp>
 #include <springfit/io/detail/read_text.hpp>
 
 namespace springfit::io::detail {
@@ -130,36 +131,46 @@ struct XdmfTarget {
     std::optional<CellKind> kind;
 };
 
+/// Calls `visit(file, dataset)` for every text between two tags of the form `file.h5:/dataset`.
+template <class Visit>
+void for_each_reference(const std::string& content, const Visit& visit) {
+    for (auto begin = content.find('>'); begin != std::string::npos; begin = content.find('>', begin + 1)) {
+        const auto end = content.find_first_of("<>", begin + 1);
+        if (end == std::string::npos || content[end] == '>') {
+            continue;
+        }
+        const std::string_view item(content.data() + begin + 1, end - begin - 1);
+        const auto colon = item.find(":/");
+        const auto first = item.find_first_not_of(" \t\r\n");
+        if (colon != std::string_view::npos && colon != first) {
+            visit(xml_unescaped(item.substr(first, colon - first)), item.substr(colon + 1));
+        }
+    }
+}
+
 [[nodiscard]] inline XdmfTarget follow_xdmf(const std::filesystem::path& path, const std::string& content) {
     std::set<std::string> files;
     std::set<std::string> reference_files;
-    // Every text between two tags of the form `file.h5:/dataset`.
-    for (std::size_t end = 0; (end = content.find('<', end)) != std::string::npos; ++end) {
-        const auto begin = content.rfind('>', end);
-        if (end == 0 || begin == std::string::npos) {
-            continue;
-        }
-        std::string_view item(content.data() + begin + 1, end - begin - 1);
-        const auto colon = item.find(":/");
-        const auto first = item.find_first_not_of(" \t\r\n");
-        if (colon == std::string_view::npos || colon == first) {
-            continue;
-        }
-        const std::string file = xml_unescaped(item.substr(first, colon - first));
+    for_each_reference(content, [&](const std::string& file, std::string_view dataset) {
         files.insert(file);
-        if (item.substr(colon + 1).starts_with("/reference/")) {
+        if (dataset.starts_with("/reference/")) {
             reference_files.insert(file);
         }
-    }
+    });
     const auto& candidates = reference_files.empty() ? files : reference_files;
+    if (candidates.empty()) {
+        throw FileError(path.string(), "points to no HDF5 file");
+    }
     if (candidates.size() != 1) {
         std::string names;
-        for (const std::string& candidate : candidates) {
-            names += (names.empty() ? ": " : ", ") + candidate;
+        for (auto name = candidates.begin(); name != candidates.end() && names.size() < 200; ++name) {
+            names += (names.empty() ? ": " : ", ") + *name;
         }
-        throw FileError(path.string(), candidates.empty()
-                                           ? "points to no HDF5 file"
-                                           : text("points to ", candidates.size(), " HDF5 files", names));
+        throw FileError(path.string(), text("points to ", candidates.size(), " HDF5 files", names));
+    }
+    if (!stays_below(*candidates.begin())) {
+        throw FileError(path.string(), text("points to ", *candidates.begin(),
+                                            "; only files in the same folder or below it are read"));
     }
     XdmfTarget target{path.parent_path() / *candidates.begin(), std::nullopt};
     for (const CellKind kind : cell_kinds) {
