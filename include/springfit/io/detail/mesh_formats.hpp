@@ -210,8 +210,8 @@ inline constexpr std::array<FileCell, 4> tetgen_cells{{
     auto cell_path = path;
     node_path.replace_extension(".node");
     cell_path.replace_extension(".ele");
-    TextScanner points(node_path.string(), read_text(node_path), '#');
-    TextScanner cells(cell_path.string(), read_text(cell_path), '#');
+    TextScanner points(node_path.string(), read_text(node_path), {.comment = '#'});
+    TextScanner cells(cell_path.string(), read_text(cell_path), {.comment = '#'});
 
     const long long n_points = points.count("the number of points");
     const long long dimension = points.count("the dimension");

@@ -1,17 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <string_view>
+#include <system_error>
 
-#include <springfit/io/atomic_file.hpp>
+#include <springfit/core/error.hpp>
 
 namespace springfit::io::detail {
 
-/// The whole of a file. Throws FileError where it is missing, a folder, or cannot be read.
+[[nodiscard]] inline std::string lower_case(std::string_view word) {
+    std::string result(word);
+    std::transform(result.begin(), result.end(), result.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    return result;
+}
+
+/// The ending of a file's name, in lower case, with its dot.
+[[nodiscard]] inline std::string lower_extension(const std::filesystem::path& path) {
+    return lower_case(path.extension().string());
+}
+
+/// The whole of a file. Throws FileError where it is missing, a folder or a device, or cannot be read.
 [[nodiscard]] inline std::string read_text(const std::filesystem::path& path) {
     std::error_code error;
     if (!std::filesystem::exists(path, error)) {
@@ -20,10 +35,13 @@ namespace springfit::io::detail {
     if (std::filesystem::is_directory(path, error)) {
         throw FileError(path.string(), "is a folder, not a file");
     }
+    if (!std::filesystem::is_regular_file(path, error)) {
+        throw FileError(path.string(), "is a device, not a file");
+    }
     std::ifstream stream(path, std::ios::binary);
     std::string content{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
     if (!stream) {
-        throw FileError(path.string(), text("cannot be read: ", reason(errno)));
+        throw FileError(path.string(), text("cannot be read: ", std::generic_category().message(errno)));
     }
     return content;
 }
