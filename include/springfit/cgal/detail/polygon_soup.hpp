@@ -7,9 +7,10 @@
 #include <cstdint>
 #include <limits>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
-#include <springfit/core/error.hpp>
+#include <springfit/cgal/detail/body_unit.hpp>
 
 namespace springfit::cgal::detail {
 
@@ -23,6 +24,9 @@ struct PolygonSoup {
 
 /// Points that are nearer than this part of the body's largest extent are one point.
 inline constexpr double merge_share = 1e-6;
+
+/// Coordinates below this part of it are 0: next to 0 alone can points be nearer to each other than rounding errors.
+inline constexpr double zero_share = 1e-14;
 
 /// Finds points that are near to one that came before.
 class NearPoints {
@@ -92,13 +96,9 @@ inline void drop_repeated_corners(PolygonSoup::Polygon& polygon) {
     }
 }
 
-/// Merges points that are near to each other into the first of them. Polygons keep their place; those that have no area
-/// left become empty. Throws InvalidArgument, naming `name`, for a body too large or too small for its volume to be a
-/// number. O(points).
-inline void merge_near_points(PolygonSoup& soup, std::string_view name) {
+/// The lowest corner of the points that polygons use, and the largest extent.
+[[nodiscard]] inline std::pair<std::array<double, 3>, double> lowest_and_extent(const PolygonSoup& soup) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    constexpr double largest = 1e100;
-    constexpr double smallest = 1e-90;
     std::array<double, 3> low{infinity, infinity, infinity};
     std::array<double, 3> high{-infinity, -infinity, -infinity};
     for (const auto& polygon : soup.polygons) {
@@ -109,10 +109,20 @@ inline void merge_near_points(PolygonSoup& soup, std::string_view name) {
             }
         }
     }
-    const double extent = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2], 0.});
-    const bool is_in_range = extent == 0 || (extent >= smallest && extent <= largest);
-    require(is_in_range, name, text("a body of a size in [", smallest, ", ", largest, "]"), extent);
+    return {low, std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2], 0.})};
+}
 
+/// Merges points that are near to each other into the first of them, and coordinates near to 0 into 0. Polygons keep
+/// their place; those that have no area left become empty. Throws InvalidArgument, naming `name`, for a body of a size
+/// that `check_extent` refuses. O(points).
+inline void merge_near_points(PolygonSoup& soup, std::string_view name) {
+    const auto [low, extent] = lowest_and_extent(soup);
+    check_extent(extent, name);
+    for (auto& point : soup.points) {
+        for (double& x : point) {
+            x = std::abs(x) < zero_share * extent ? 0. : x;
+        }
+    }
     NearPoints near(low, extent > 0 ? merge_share * extent : 1.);
     constexpr auto none = std::numeric_limits<std::size_t>::max();
     std::vector<std::size_t> merged(soup.points.size(), none);

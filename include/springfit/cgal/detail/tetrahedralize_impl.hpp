@@ -19,6 +19,10 @@ inline constexpr double flake_angle = 2;
 /// Pieces that hold less than this share of the volume are taken off, where one piece is wanted.
 inline constexpr double crumb_share = 0.01;
 
+/// Meshing ends at so many nodes, and so many times the wanted ones: at sharp edges that nearly meet there is no end.
+inline constexpr double few_nodes = 10000;
+inline constexpr double far_more_nodes = 30;
+
 /// Where thin parts fall apart, up to so many times the wanted nodes are tried, half as many more each time.
 inline constexpr Index most_more_nodes = 4;
 
@@ -113,11 +117,21 @@ void check_result(const Mesh<3, Scalar, Tet4>& mesh, const TetrahedralizeOptions
         interrupted = !go_on(options.progress, "mesh", fraction);
         return !interrupted;
     };
+    const double wanted = options.cell_size > 0 ? nodes_at(options.cell_size) : static_cast<double>(options.n_nodes);
+    const auto limit = static_cast<std::size_t>(few_nodes + far_more_nodes * wanted);
+    bool keeps_edges = true;
     const auto mesh_at = [&](double size) {
-        SharpEdges edges = all_edges;
-        edges.drop_short(shortest_branch * size, shortest_network * size);
         const double distance = options.surface_distance > 0 ? options.surface_distance : size / 5;
-        return mesher.refined(size, distance, edges.lines());
+        if (keeps_edges) {
+            SharpEdges edges = all_edges;
+            edges.drop_short(shortest_branch * size, shortest_network * size);
+            try {
+                return mesher.refined(size, distance, edges.lines(), limit);
+            } catch (const TooManyNodes&) {
+                keeps_edges = false; // they run nearer to each other than cells can follow
+            }
+        }
+        return mesher.refined(size, distance, {}, limit);
     };
     const auto complex =
         options.cell_size > 0

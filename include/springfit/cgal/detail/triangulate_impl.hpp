@@ -111,6 +111,10 @@ template <std::floating_point Scalar>
 SPRINGFIT_CGAL_INLINE Outline checked(const Outline& outline, std::string_view name) {
     require(outline.points.allFinite() && outline.holes.allFinite(), name, "finite coordinates",
             "one that is not finite");
+    if (outline.points.cols() > 0) {
+        detail::check_extent((outline.points.rowwise().maxCoeff() - outline.points.rowwise().minCoeff()).maxCoeff(),
+                             name);
+    }
     std::map<std::array<double, 2>, int> number;
     std::vector<std::array<int, 2>> segments;
     std::map<int, int> n_segments_at;

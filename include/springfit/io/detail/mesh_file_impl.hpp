@@ -3,6 +3,7 @@
 
 #include <springfit/io/detail/gmsh.hpp>
 #include <springfit/io/detail/mesh_formats.hpp>
+#include <springfit/io/detail/vtk.hpp>
 #include <springfit/io/mesh_file.hpp>
 
 namespace springfit::io {
@@ -19,7 +20,7 @@ inline MeshFile read_mesh(const std::filesystem::path& path) {
     if (ending == ".msh") {
         return detail::GmshReader(scanner).read();
     }
-    return ending == ".mesh" ? detail::read_medit(scanner) : detail::read_vtk(scanner);
+    return ending == ".mesh" ? detail::read_medit(scanner) : detail::VtkReader(scanner).read();
 }
 
 } // namespace springfit::io

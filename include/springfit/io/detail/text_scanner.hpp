@@ -130,6 +130,9 @@ public:
         return std::string_view(m_content).substr(begin, m_at - begin);
     }
 
+    /// All that is left of the file.
+    [[nodiscard]] std::string_view rest() const { return std::string_view(m_content).substr(m_at); }
+
     /// Goes on behind the next `mark`.
     void skip_past(std::string_view mark) {
         const auto found = m_content.find(mark, m_at);
