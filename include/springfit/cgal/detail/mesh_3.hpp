@@ -103,6 +103,7 @@ SolidMesher::refined(double size, double distance, const std::vector<SharpLine>&
     const auto result = std::make_shared<SolidComplex>();
     without_failure([&] {
         m_state->prepare(lines);
+        m_state->domain->allow_points_on_edges(2 * most_nodes);
         refine(*result, *m_state->domain,
                SolidCriteria(SolidCriteria::Edge_criteria(size),
                              SolidCriteria::Facet_criteria(25, circumradius * size, distance),
