@@ -28,7 +28,7 @@ struct TetrahedralizeOptions {
 
 /// Cuts the inside of a closed surface into tetrahedra by Delaunay refinement, its sharp edges kept.
 ///
-/// The same input gives the same mesh. Where sharp edges nearly meet, and would take thirty times the nodes wanted or
+/// The same input gives the same mesh. Where sharp edges nearly meet, and would take ten times the nodes wanted or
 /// more, none are kept. Throws InvalidArgument for an option out of range, for a surface that does not
 /// bound a solid (open, self-intersecting, without volume: what is wrong and how many), where no tetrahedron fits, and
 /// where the mesh falls into more pieces than the surface has (those below 1 % of the volume are left out). O(n_nodes

@@ -20,8 +20,8 @@ inline constexpr double flake_angle = 2;
 inline constexpr double crumb_share = 0.01;
 
 /// Meshing ends at so many nodes, and so many times the wanted ones: at sharp edges that nearly meet there is no end.
-inline constexpr double few_nodes = 10000;
-inline constexpr double far_more_nodes = 30;
+inline constexpr double few_nodes = 2000;
+inline constexpr double far_more_nodes = 10;
 
 /// Where thin parts fall apart, up to so many times the wanted nodes are tried, half as many more each time.
 inline constexpr Index most_more_nodes = 4;

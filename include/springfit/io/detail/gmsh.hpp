@@ -54,7 +54,7 @@ public:
                 m_scanner.refuse("$ParametricNodes; save the mesh without parametric coordinates");
             } else if (section == (m_version == 1 ? "$ELM" : "$Elements")) {
                 if (!nodes) {
-                    m_scanner.refuse(text(section, " before the nodes"));
+                    m_scanner.refuse(text(section, " before ", m_version == 1 ? "$NOD" : "$Nodes"));
                 }
                 m_version == 1 ? read_elements_1() : m_version == 2 ? read_elements_2() : read_elements_4();
                 elements = true;

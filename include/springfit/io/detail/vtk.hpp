@@ -75,14 +75,21 @@ private:
         expect("UNSTRUCTURED_GRID");
     }
 
-    /// The type of the numbers of this section, whose last line of text ends here.
+    /// Bytes begin on the line after the text.
+    void begin_numbers() {
+        if (m_is_binary) {
+            m_scanner.skip_line();
+        }
+    }
+
+    /// The type of the numbers of this section, which follow.
     [[nodiscard]] NumberType read_type() {
         const std::string_view word = m_scanner.word("a type of number");
         const auto type = number_type(word);
         if (!type) {
             m_scanner.refuse(text("expected a type of number, found ", word.substr(0, 40)));
         }
-        m_scanner.skip_line();
+        begin_numbers();
         return *type;
     }
 
@@ -115,13 +122,11 @@ private:
         const long long size = m_scanner.count("the size of the list of cells");
         m_scanner.check_size(n, "cells");
         m_scanner.check_size(size, "numbers of nodes");
-        m_scanner.skip_line();
+        begin_numbers();
         m_cells = {};
-        if (!m_is_binary || m_scanner.rest().starts_with("OFFSETS")) {
-            if (lower_case(m_scanner.peek()) == "offsets") {
-                read_cells_by_offsets(n, size);
-                return;
-            }
+        if (lower_case((m_is_binary ? m_scanner.rest() : m_scanner.peek()).substr(0, 7)) == "offsets") {
+            read_cells_by_offsets(n, size);
+            return;
         }
         for (long long c = 0; c < n; ++c) {
             const long long n_nodes = count(NumberType::int32, "the number of nodes of a cell");
@@ -157,7 +162,7 @@ private:
             m_scanner.refuse(text("expected the types of ", std::max<std::size_t>(m_cells.offsets.size(), 1) - 1,
                                   " cells, found ", n));
         }
-        m_scanner.skip_line();
+        begin_numbers();
         for (std::size_t c = 0; c < static_cast<std::size_t>(n); ++c) {
             const long long code = whole(NumberType::int32, "the type of a cell");
             const FileCell* type = find_cell(vtk_cells, code);
