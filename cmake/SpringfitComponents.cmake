@@ -5,6 +5,11 @@ set(SPRINGFIT_ALL_COMPONENTS core parallel cholmod ipopt io cgal search compiled
 
 set(SPRINGFIT_core_ROOMS core mesh solve fem motion network cases body simulate fit closed_form score calibrate)
 set(SPRINGFIT_core_LINKS Eigen3::Eigen)
+# Readers of text files need no library: cgal has them of core, since io may not be there.
+set(SPRINGFIT_core_HEADERS
+    springfit.hpp io/outline_file.hpp io/surface_file.hpp io/detail/coordinate.hpp io/detail/number_type.hpp io/detail/obj.hpp
+    io/detail/off.hpp io/detail/outline_file_impl.hpp io/detail/ply.hpp io/detail/read_text.hpp io/detail/stl.hpp
+    io/detail/surface_collector.hpp io/detail/surface_file_impl.hpp io/detail/text_scanner.hpp)
 set(SPRINGFIT_parallel_ROOMS parallel)
 set(SPRINGFIT_parallel_LINKS springfit::core TBB::tbb)
 set(SPRINGFIT_cholmod_ROOMS cholmod)

@@ -146,10 +146,17 @@ TEST_CASE("what cannot be meshed is refused with what is wrong") {
                     InvalidArgument);
     CHECK_THROWS_AS((void)cgal::tetrahedralize<double>(surface, Options{.cell_size = 1, .sliver_angle = 50}),
                     InvalidArgument);
+    CHECK_THROWS_WITH_AS((void)cgal::tetrahedralize<double>(surface, {.n_nodes = 2147483647}),
+                         "n_nodes: expected at most 20000000, found 2147483647", InvalidArgument);
+    CHECK_THROWS_WITH_AS((void)cgal::tetrahedralize<double>(surface, {.cell_size = 1e-9}),
+                         "cell_size: expected a length at which the body has at most 20000000 nodes, found 1e-09, at "
+                         "which it has some 1.4e+27",
+                         InvalidArgument);
     auto open = surface;
     open.cells = open.cells.rightCols(11).eval();
     CHECK_THROWS_WITH_AS((void)cgal::tetrahedralize<double>(open, {.cell_size = 1}),
-                         "surface: expected a closed surface, found an open one: 3 boundary edges around 1 hole",
+                         "surface: expected a closed surface, found an open one: 3 boundary edges around 1 hole, the "
+                         "largest 1.41421 across (the surface is 1.73205); close it first",
                          InvalidArgument);
     CHECK(relative(volume(cgal::tetrahedralize<double>(open, {.cell_size = 1, .repair = {.max_hole_edges = 3}})), 1.,
                    1.) < 1e-12);
@@ -198,4 +205,16 @@ TEST_CASE("the caller may stop the search and gets the best mesh so far") {
     CHECK(mesh.n_cells() > 0);
     CHECK(calls >= 1);
     CHECK(stage == "mesh");
+}
+
+TEST_CASE("meshing ends where a face is a needle") {
+    auto needle = test::box(1, 1, 1); // the face in y = 0 has a corner on its diagonal, a little off it
+    needle.nodes.conservativeResize(3, 9);
+    needle.nodes.col(8) << 0.5, -1e-4, 0.5;
+    const auto cells = needle.cells;
+    needle.cells.resize(3, 14);
+    needle.cells << cells, Eigen::Vector3i(0, 1, 8), Eigen::Vector3i(1, 5, 8);
+    needle.cells.col(4) << 5, 0, 8; // was 0 1 5
+    const auto mesh = cgal::tetrahedralize<double>(needle, {.n_nodes = 60});
+    CHECK(relative(volume(mesh), 1., 1.) < 0.2);
 }

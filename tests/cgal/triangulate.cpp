@@ -158,6 +158,8 @@ TEST_CASE("outlines that bound nothing are refused with what is wrong and how ma
     CHECK_THROWS_AS((void)cgal::triangulate<double>(square, {.cell_size = 1, .n_nodes = 10}), InvalidArgument);
     CHECK_THROWS_AS((void)cgal::triangulate<double>(square, {.cell_size = std::nan("")}), InvalidArgument);
     CHECK_THROWS_AS((void)cgal::triangulate<double>(square, {.n_nodes = 2}), InvalidArgument);
+    CHECK_THROWS_AS((void)cgal::triangulate<double>(square, {.n_nodes = 20000001}), InvalidArgument);
+    CHECK_THROWS_AS((void)cgal::triangulate<double>(square, {.cell_size = 1e-9}), InvalidArgument);
 }
 
 TEST_CASE("what is wrong with a file is said with its name and line") {
@@ -175,12 +177,12 @@ TEST_CASE("what is wrong with a file is said with its name and line") {
     };
     CHECK(contains(read("n.poly", replaced(plate_poly, "2 4 0 1", "2 4 nan 1")),
                    "n.poly:4: a coordinate is not finite: nan"));
-    CHECK(contains(read("w.poly", replaced(plate_poly, "2 4 0 1", "2 4 four 1")), "w.poly:4: not a number: four"));
+    CHECK(contains(read("w.poly", replaced(plate_poly, "2 4 0 1", "2 4 four 1")), "w.poly:4: expected a coordinate, found \"four\""));
     CHECK(contains(read("s.poly", replaced(plate_poly, "2 4 0 1", "2 4")),
-                   "s.poly:4: expected a vertex, 3 numbers, found 2"));
+                   "s.poly:4: expected two coordinates of a vertex, found the end of the line"));
     CHECK(contains(read("i.poly", replaced(plate_poly, "2 2 3 5", "2 2 9 5")),
                    "i.poly:14: expected a vertex' number in [1, 8], found 9"));
-    CHECK(contains(read("c.poly", plate_poly.substr(0, 60)), "ends where a vertex should be"));
+    CHECK(contains(read("c.poly", plate_poly.substr(0, 60)), "expected the vertex' number, found the end of the file"));
     CHECK(contains(read("d.poly", "8 3 0 0\n"), "d.poly:1: expected the dimension in [2, 2], found 3"));
     CHECK(contains(read("o.poly", replaced(plate_poly, "4 4 1 5", "4 4 3 5")), "o.poly: expected a closed outline"));
 

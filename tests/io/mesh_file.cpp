@@ -213,7 +213,7 @@ TEST_CASE("what is wrong in a Gmsh file is named with its line") {
     CHECK(with(good, "1\n1 1 0 1 2") == ": holds no cells but points and lines");
     CHECK(with(good, "1\n1 6 0 1 2 3 1 2 3") == ": holds 1 prisms, for which springfit has no kind of cell");
     CHECK(with("0", "0") == ": holds no points");
-    CHECK(refusal("a.msh", "$NOD\n") == ":1: expected $MeshFormat: not a Gmsh file, or of version 1");
+    CHECK(refusal("a.msh", "$NODES\n") == ":1: expected $MeshFormat, or $NOD of version 1: not a Gmsh file");
     CHECK(refusal("a.msh", "$MeshFormat\n4 0 8\n") == ":2: Gmsh version 4; save it as version 4.1 or 2.2");
     CHECK(refusal("a.msh", gmsh_head) == ": has no section $Nodes");
     CHECK(refusal("a.msh", gmsh_head + "$ParametricNodes\n0\n$EndParametricNodes\n") ==
@@ -258,8 +258,7 @@ TEST_CASE("VTK legacy grids, with cells as lists and with offsets") {
     CHECK(refusal("a.vtk", head + "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n77\n") ==
           ":14: cells of VTK's type 77 are not known");
     CHECK(refusal("a.vtk", head) == ": has no section CELL_TYPES");
-    CHECK(refusal("a.vtk", "# vtk DataFile Version 3.0\nx\nBINARY\n") ==
-          ":3: expected ASCII, found BINARY; save it as text");
+    CHECK(refusal("a.vtk", "# vtk DataFile Version 3.0\nx\nXML\n") == ":3: expected ASCII or BINARY, found XML");
     CHECK(refusal("a.vtk", "<VTKFile/>\n") == ":1: expected # vtk DataFile: not a VTK legacy file");
 }
 
@@ -342,4 +341,83 @@ TEST_CASE("a surface is no volume, and space is no plane") {
     const ScratchFolder folder;
     CHECK(file_error([&] { (void)read_mesh(folder / "none.msh"); }) ==
           (folder / "none.msh").string() + ": no such file");
+}
+
+namespace {
+
+/// A tetrahedron and a point that no cell uses, as a VTK file with keywords in this case, of words or of bytes.
+std::string vtk(bool binary, bool lower_case, bool offsets) {
+    std::string content = "# vtk DataFile Version 5.1\na title\n";
+    const auto keywords = [&](std::string words) {
+        for (char& c : words) {
+            c = lower_case && c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+        }
+        content += words + '\n';
+    };
+    const auto put = [&]<class T>(std::initializer_list<T> numbers) {
+        for (const T number : numbers) {
+            std::array<char, sizeof(T)> raw{};
+            std::memcpy(raw.data(), &number, sizeof(T));
+            std::reverse(raw.begin(), raw.end()); // the highest byte first
+            content += binary ? std::string(raw.data(), raw.size()) : text(number, ' ');
+        }
+        content += '\n';
+    };
+    keywords(binary ? "BINARY" : "ASCII");
+    keywords("DATASET UNSTRUCTURED_GRID");
+    keywords("POINTS 5 float");
+    put({0.F, 0.F, 0.F, 1.F, 0.F, 0.F, 9.F, 9.F, 9.F, 0.F, 2.F, 0.F, 0.F, 0.F, 1.F});
+    if (offsets) {
+        keywords("CELLS 2 4");
+        keywords("OFFSETS vtktypeint64");
+        put({std::int64_t(0), std::int64_t(4)});
+        keywords("CONNECTIVITY vtktypeint64");
+        put({std::int64_t(0), std::int64_t(1), std::int64_t(3), std::int64_t(4)});
+    } else {
+        keywords("CELLS 1 5");
+        put({std::int32_t(4), std::int32_t(0), std::int32_t(1), std::int32_t(3), std::int32_t(4)});
+    }
+    keywords("CELL_TYPES 1");
+    put({std::int32_t(10)});
+    return content;
+}
+
+} // namespace
+
+TEST_CASE("VTK: words and bytes, keywords in either case; each beginning of a file is refused") {
+    for (const bool binary : {false, true}) {
+        for (const bool lower_case : {false, true}) {
+            for (const bool offsets : {false, true}) {
+                const std::string good = vtk(binary, lower_case, offsets);
+                const auto mesh = read("a.vtk", good).as_mesh<3, double, Tet4>();
+                CHECK(mesh.nodes.col(2) == Vector<3, double>(0, 2, 0));
+                CHECK(mesh.cells == Eigen::Vector4i(0, 1, 2, 3));
+                for (std::size_t n = 0; n + 3 < good.size(); ++n) {
+                    CHECK(refusal("a.vtk", good.substr(0, n)).find("no FileError") == std::string::npos);
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("Gmsh 1: nodes and elements under their old names") {
+    const std::string good = "$NOD\n4\n7 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$ENDNOD\n$ELM\n2\n1 2 5 1 3 7 2 3\n"
+                             "2 4 5 1 4 7 2 3 4\n$ENDELM\n";
+    const auto mesh = read("a.msh", good).as_mesh<3, double, Tet4>();
+    CHECK(mesh.n_nodes() == 4);
+    CHECK(mesh.cells == Eigen::Vector4i(0, 1, 2, 3));
+    std::string wrong = good;
+    wrong.replace(wrong.find("2 4 5 1 4"), 9, "2 4 5 1 5");
+    CHECK(refusal("a.msh", wrong) == ":11: expected 4 nodes, as tetrahedra have, found 5");
+    CHECK(refusal("a.msh", good.substr(0, good.find("$ELM"))) == ": has no section $ELM");
+}
+
+TEST_CASE("TetGen: headers that leave out zeros; a number given twice is an error of the .node file") {
+    const ScratchFolder folder;
+    put(folder / "a.node", "4 3\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n");
+    put(folder / "a.ele", "1 4\n0 0 1 2 3\n");
+    CHECK(read_mesh(folder / "a.ele").points.cols() == 4);
+    put(folder / "a.node", "4 3\n0 0 0 0\n1 1 0 0\n1 0 1 0\n3 0 0 1\n");
+    const std::string message = file_error([&] { (void)read_mesh(folder / "a.ele"); });
+    CHECK(message.ends_with("a.node:4: point 1 is there twice"));
 }

@@ -69,6 +69,10 @@ bodies.write_off(folder / "no-faces.off", [], [])
 refused("empty surface", ["fit", folder / "no-faces.off", *MATERIAL], ["no-faces.off"])
 bodies.write_off(folder / "open.off", bodies.CUBE_POINTS, bodies.CUBE_FACES[:-1])
 refused("open surface", ["fit", folder / "open.off", *MATERIAL], ["open.off", "4 boundary edges", "1 hole"])
+bodies.write_off(folder / "sheet.off", bodies.CUBE_POINTS, bodies.CUBE_FACES[:1])
+refused("sheet", ["fit", folder / "sheet.off", *MATERIAL], ["sheet.off", "membrane", "a volume is needed"])
+bodies.write_off(folder / "crossed.off", bodies.CUBE_POINTS, [(2, 7, 6, 0, 4)])
+refused("face that crosses itself", ["fit", folder / "crossed.off", *MATERIAL], ["crossed.off", "face 1"])
 shifted = [(x + 0.5, y + 0.5, z + 0.5) for x, y, z in bodies.CUBE_POINTS]
 crossing = bodies.CUBE_FACES + [tuple(i + 8 for i in face) for face in bodies.CUBE_FACES]
 bodies.write_off(folder / "crossing.off", bodies.CUBE_POINTS + shifted, crossing)
@@ -123,6 +127,8 @@ refused("unknown option", ["fit", cube, *MATERIAL, "--colour", "red"], ["--colou
 refused("missing option", ["fit", cube, "--young", "1e4", "--poisson", "0.3"], ["--density"])
 refused("element of other cells", ["fit", cube, *MATERIAL, *QUICK, "--element", "quad4"], ["--element", "quad4"])
 refused("unknown clamp", ["fit", cube, *MATERIAL, *QUICK, "--clamp", "left"], ["--clamp", "left"])
+refused("cells without number", ["fit", cube, *MATERIAL, "--cell-size", "1e-9"], ["cell_size", "20000000 nodes"])
+refused("nodes without number", ["fit", cube, *MATERIAL, "--nodes", "2147483647"], ["n_nodes", "20000000"])
 refused("two sizes", ["fit", cube, *MATERIAL, "--nodes", "40", "--cell-size", "0.3"], ["--nodes", "--cell-size"])
 refused("reference no finer than the network", ["fit", cube, *MATERIAL, "--nodes", "40", "--reference-nodes", "40"],
         ["--reference-nodes", "more than the 40"])

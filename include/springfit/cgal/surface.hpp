@@ -12,8 +12,8 @@ namespace springfit::cgal {
 /// A triangle surface in space on plain arrays: points `[3 x n_nodes]`, m, and triangles `[3 x n_cells]`.
 using Surface = Mesh<3, double, Tri3>;
 
-/// Repairs beyond the usual ones (points given twice merged, faces oriented alike, stitched, cut into triangles,
-/// degenerate and repeated faces dropped).
+/// Repairs beyond the usual ones (points nearer than 1e-6 of the largest extent merged, faces oriented alike, stitched,
+/// cut into triangles, degenerate and repeated faces dropped).
 struct RepairOptions {
     int max_hole_edges = 0; ///< holes with at most this many boundary edges are filled, >= 0; 0 leaves all open
 };
@@ -30,14 +30,14 @@ struct SurfaceExamination {
 
 /// A repaired copy of a surface; closed ones come back with their normals outwards.
 ///
-/// Throws InvalidArgument for arrays that do not fit together, for coordinates that are not finite, and where nothing
-/// but degenerate triangles was given. O(n log n).
+/// Throws InvalidArgument for arrays that do not fit together, for coordinates that are not finite, for a body of a
+/// size outside 1e-30 to 1e30 m, and where nothing but degenerate triangles was given. O(n log n).
 [[nodiscard]] SPRINGFIT_CGAL_INLINE Surface repair(const Surface& surface, const RepairOptions& options = {});
 
 /// Reads and repairs a surface: OFF, OBJ, STL or PLY, text or binary, told apart by the extension.
 ///
-/// Open surfaces are fine here (`require_solid` refuses them). Throws FileError for a missing, unreadable or empty file
-/// and for a coordinate that is not finite, with the line where the file is text.
+/// Open surfaces are fine here (`require_solid` refuses them). Throws FileError as `io::read_surface_file`, and
+/// InvalidArgument, naming the file, as above and for a face that crosses or touches itself.
 [[nodiscard]] SPRINGFIT_CGAL_INLINE Surface read_surface(const std::filesystem::path& path,
                                                          const RepairOptions& options = {});
 

@@ -13,9 +13,9 @@ namespace springfit::cgal {
 
 /// How a solid is cut into tetrahedra. Give `cell_size` or `n_nodes`, not both.
 struct TetrahedralizeOptions {
-    double cell_size = 0;         ///< wanted mean edge length, m, > 0
-    Index n_nodes = 0;            ///< wanted number of nodes, >= 4; met within 10 % where shape and sharp edges allow;
-                                  ///< up to four times as many where thin parts fell apart
+    double cell_size = 0; ///< wanted mean edge length, m, > 0
+    Index n_nodes = 0;    ///< wanted number of nodes, 4 to 2e7; met within 10 % where shape and sharp edges allow;
+                          ///< up to four times as many where thin parts fell apart
     double sharp_edge_angle = 60; ///< edges whose faces' normals differ by more are kept, degrees, in (0, 180]
     double surface_distance =
         0;                    ///< farthest that the mesh's surface lies from the given one, m, >= 0; 0: cell_size / 5
@@ -28,7 +28,8 @@ struct TetrahedralizeOptions {
 
 /// Cuts the inside of a closed surface into tetrahedra by Delaunay refinement, its sharp edges kept.
 ///
-/// The same input gives the same mesh. Throws InvalidArgument for an option out of range, for a surface that does not
+/// The same input gives the same mesh. Where sharp edges nearly meet, and would take ten times the nodes wanted or
+/// more, none are kept. Throws InvalidArgument for an option out of range, for a surface that does not
 /// bound a solid (open, self-intersecting, without volume: what is wrong and how many), where no tetrahedron fits, and
 /// where the mesh falls into more pieces than the surface has (those below 1 % of the volume are left out). O(n_nodes
 /// log n_nodes) per meshing, of which a wanted `n_nodes` takes two or three as a rule.

@@ -21,7 +21,7 @@ struct Outline {
 /// How a plane body is cut into triangles. Give `cell_size` or `n_nodes`, not both.
 struct TriangulateOptions {
     double cell_size = 0;        ///< wanted mean edge length, m, > 0
-    Index n_nodes = 0;           ///< wanted number of nodes, >= 3; met within 10 % where the outline allows
+    Index n_nodes = 0;           ///< wanted number of nodes, 3 to 2e7; met within 10 % where the outline allows
     bool several_pieces = false; ///< accept a mesh of several pieces that no edge joins
     ProgressCallback progress{}; ///< called after each meshing; returning false takes the best mesh so far
 };
@@ -34,7 +34,7 @@ struct TriangulateOptions {
 
 /// Reads an outline: Triangle's .poly (numbered from 0 or 1) or .wkt (POLYGON and MULTIPOLYGON with holes).
 ///
-/// Throws FileError, with the line where there is one, for what cannot be read, and InvalidArgument as `checked`.
+/// Throws FileError as `io::read_outline_file`, and InvalidArgument as `checked`.
 [[nodiscard]] SPRINGFIT_CGAL_INLINE Outline read_outline(const std::filesystem::path& path);
 
 /// Cuts the inside of an outline into triangles by constrained Delaunay refinement.

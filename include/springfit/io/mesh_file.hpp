@@ -11,9 +11,9 @@ namespace springfit::io {
 ///
 /// | ending         | format                                                                                         |
 /// |----------------|------------------------------------------------------------------------------------------------|
-/// | .msh           | Gmsh 2.2 and 4.1, text and binary                                                              |
+/// | .msh           | Gmsh 1, 2.0 to 2.2 and 4.1, text and binary                                                    |
 /// | .mesh          | MEDIT, text                                                                                    |
-/// | .vtk           | VTK legacy, unstructured grid, text                                                            |
+/// | .vtk           | VTK legacy, unstructured grid, text and binary                                                 |
 /// | .node and .ele | TetGen (3D) and Triangle (2D), numbered from 0 or 1; either file may be named; corners only    |
 ///
 /// Node numbers need not be contiguous or sorted; points, lines and faces beside solid cells are left out, with a note.

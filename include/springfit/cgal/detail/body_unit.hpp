@@ -3,10 +3,20 @@
 
 #include <cmath>
 
+#include <springfit/core/error.hpp>
 #include <springfit/core/types.hpp>
 
 /// Meshers work on bodies of size 1, on a grid: a body has the same mesh in any unit.
 namespace springfit::cgal::detail {
+
+/// Throws InvalidArgument, naming `name`, for a body so large or so small that sharp angles in it cannot be computed
+/// (powers of its size leave the range of numbers). 0 is left to those who ask for an area.
+inline void check_extent(double extent, std::string_view name) {
+    constexpr double smallest = 1e-30;
+    constexpr double largest = 1e30;
+    require(extent == 0 || (extent >= smallest && extent <= largest), name,
+            text("a body of a size from ", smallest, " to ", largest), extent);
+}
 
 /// The largest extent of points, m; 1 where they have none.
 template <int Dim>

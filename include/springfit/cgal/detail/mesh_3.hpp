@@ -9,6 +9,7 @@
 #include <CGAL/make_mesh_3.h>
 
 #include <springfit/cgal/detail/solid_complex.hpp>
+#include <springfit/core/error.hpp>
 
 namespace springfit::cgal::detail {
 
@@ -40,29 +41,37 @@ inline void SolidMesher::State::prepare(const std::vector<SharpLine>& wanted) {
 inline constexpr std::array<int, 4> initial_points{-1, 100, 1000, 10000};
 
 /// Delaunay refinement alone. CGAL's `make_mesh_3` does the same where it is asked for no optimisation, but has all of
-/// its optimisers compiled.
-inline void refine(SolidComplex& complex, const SolidDomain& domain, const SolidCriteria& criteria) {
+/// its optimisers compiled. Ends, unfinished, where there are `most_nodes`.
+inline void refine(SolidComplex& complex, const SolidDomain& domain, const SolidCriteria& criteria,
+                   std::size_t most_nodes) {
     using Complex = SolidComplex::Complex;
 #if CGAL_VERSION_NR < CGAL_VERSION_NUMBER(5, 6, 0)
     for (const int n_points : initial_points) {
         CGAL::parameters::internal::Mesh_3_options options;
         options.number_of_initial_points = n_points;
+        options.maximal_number_of_vertices = most_nodes;
         complex.complex = Complex();
         CGAL::Mesh_3::internal::C3t3_initializer<Complex, SolidDomain, SolidCriteria, true>()(complex.complex, domain,
                                                                                               criteria, true, options);
+        if (complex.complex.triangulation().number_of_vertices() >= most_nodes) {
+            return;
+        }
         Complex facets = complex.complex;
         CGAL::Mesh_3::C3T3_helpers<Complex, SolidDomain>(facets, domain).update_restricted_facets();
         if (facets.number_of_facets() > 0) {
             break;
         }
     }
-    CGAL::Mesh_3::Mesher_3<Complex, SolidCriteria, SolidDomain>(complex.complex, domain, criteria).refine_mesh();
+    CGAL::Mesh_3::Mesher_3<Complex, SolidCriteria, SolidDomain>(complex.complex, domain, criteria,
+                                                                CGAL::FACET_VERTICES_ON_SURFACE, most_nodes)
+        .refine_mesh();
     complex.complex.clear_manifold_info();
 #else
     for (const int n_points : initial_points) {
         complex.complex = CGAL::make_mesh_3<Complex>(
             domain, criteria, CGAL::parameters::no_perturb(), CGAL::parameters::no_exude(),
-            CGAL::parameters::mesh_3_options(CGAL::parameters::number_of_initial_points = n_points));
+            CGAL::parameters::mesh_3_options(
+                CGAL::parameters::number_of_initial_points(n_points).maximal_number_of_vertices(most_nodes)));
         if (complex.complex.number_of_facets() > 0) {
             break;
         }
@@ -88,17 +97,22 @@ SPRINGFIT_CGAL_INLINE SolidMesher::SolidMesher(const CellList<3>& surface, const
     m_state->patches.erase(std::unique(m_state->patches.begin(), m_state->patches.end()), m_state->patches.end());
 }
 
-SPRINGFIT_CGAL_INLINE std::shared_ptr<SolidComplex> SolidMesher::refined(double size, double distance,
-                                                                         const std::vector<SharpLine>& lines) {
+SPRINGFIT_CGAL_INLINE std::shared_ptr<SolidComplex>
+SolidMesher::refined(double size, double distance, const std::vector<SharpLine>& lines, std::size_t most_nodes) {
     constexpr double circumradius = 0.8; // largest of facets and cells per edge length wanted, to give that mean length
     const auto result = std::make_shared<SolidComplex>();
     without_failure([&] {
         m_state->prepare(lines);
+        m_state->domain->allow_points_on_edges(2 * most_nodes);
         refine(*result, *m_state->domain,
                SolidCriteria(SolidCriteria::Edge_criteria(size),
                              SolidCriteria::Facet_criteria(25, circumradius * size, distance),
-                             SolidCriteria::Cell_criteria(2, circumradius * size)));
+                             SolidCriteria::Cell_criteria(2, circumradius * size)),
+               most_nodes);
     });
+    if (result->complex.triangulation().number_of_vertices() >= most_nodes) {
+        throw TooManyNodes(text("more than ", most_nodes, " nodes that thin parts and sharp edges ask for"));
+    }
     return result;
 }
 

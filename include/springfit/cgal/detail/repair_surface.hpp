@@ -14,11 +14,11 @@
 #include <CGAL/Polygon_mesh_processing/repair_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Polygon_mesh_processing/stitch_borders.h>
-#include <CGAL/Polygon_mesh_processing/triangulate_faces.h>
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
 #include <CGAL/Surface_mesh.h>
 
-#include <springfit/cgal/detail/read_polygons.hpp>
+#include <springfit/cgal/detail/cut_polygons.hpp>
+#include <springfit/io/surface_file.hpp>
 #include <springfit/mesh/mesh.hpp>
 
 namespace springfit::cgal::detail {
@@ -43,16 +43,22 @@ inline Index hole_edges(const TriangleSurface& surface, TriangleSurface::Halfedg
     return n;
 }
 
-/// Merges points, orients and stitches the polygons, cuts them into triangles, drops degenerate ones, fills the holes
-/// of at most `max_hole_edges` edges, and turns a closed surface outwards.
-inline TriangleSurface repaired(PolygonSoup soup, int max_hole_edges) {
+/// Merges points, cuts polygons into triangles, orients and stitches them, drops degenerate ones, fills the holes of at
+/// most `max_hole_edges` edges, and turns a closed surface outwards. Throws InvalidArgument, naming `name`, for faces
+/// that cross themselves and for a body too large or too small to compute with.
+inline TriangleSurface repaired(PolygonSoup soup, int max_hole_edges, std::string_view name) {
     namespace pmp = CGAL::Polygon_mesh_processing;
-    pmp::repair_polygon_soup(soup.points, soup.polygons);
-    pmp::orient_polygon_soup(soup.points, soup.polygons);
+    merge_near_points(soup, name);
+    cut_polygons(soup, name);
+    std::vector<Kernel::Point_3> points;
+    for (const auto& p : soup.points) {
+        points.emplace_back(p[0], p[1], p[2]);
+    }
+    pmp::repair_polygon_soup(points, soup.polygons);
+    pmp::orient_polygon_soup(points, soup.polygons);
     TriangleSurface surface;
-    pmp::polygon_soup_to_polygon_mesh(soup.points, soup.polygons, surface);
+    pmp::polygon_soup_to_polygon_mesh(points, soup.polygons, surface);
     pmp::stitch_borders(surface);
-    pmp::triangulate_faces(surface);
     pmp::remove_degenerate_faces(surface);
     for (const auto hole : holes(surface)) {
         if (hole_edges(surface, hole) <= max_hole_edges) {
@@ -89,12 +95,20 @@ inline Mesh<3, double, Tri3> to_arrays(const TriangleSurface& surface) {
 inline PolygonSoup to_soup(const Mesh<3, double, Tri3>& mesh) {
     validate(mesh);
     PolygonSoup soup;
-    for (Index i = 0; i < mesh.n_nodes(); ++i) {
-        soup.points.emplace_back(mesh.nodes(0, i), mesh.nodes(1, i), mesh.nodes(2, i));
+    for (const auto& p : mesh.nodes.colwise()) {
+        soup.points.push_back({p.x(), p.y(), p.z()});
     }
-    for (Index c = 0; c < mesh.n_cells(); ++c) {
-        soup.polygons.push_back({static_cast<std::size_t>(mesh.cells(0, c)), static_cast<std::size_t>(mesh.cells(1, c)),
-                                 static_cast<std::size_t>(mesh.cells(2, c))});
+    for (const auto& c : mesh.cells.colwise()) {
+        soup.polygons.push_back(
+            {static_cast<std::size_t>(c(0)), static_cast<std::size_t>(c(1)), static_cast<std::size_t>(c(2))});
+    }
+    return soup;
+}
+
+inline PolygonSoup to_soup(io::SurfaceFile file) {
+    PolygonSoup soup{std::move(file.points), {}};
+    for (const auto& polygon : file.polygons) {
+        soup.polygons.emplace_back(polygon.begin(), polygon.end());
     }
     return soup;
 }

@@ -6,9 +6,22 @@
 #include <limits>
 #include <utility>
 
+#include <springfit/core/error.hpp>
 #include <springfit/core/types.hpp>
 
 namespace springfit::cgal::detail {
+
+/// More nodes than this are refused before work begins.
+inline constexpr Index most_nodes = 20000000;
+
+/// Throws InvalidArgument for a cell size, in units of `unit` (m), at which there would be too many nodes; 0 is none.
+template <class NodesAt>
+void check_cell_size(double cell_size, double unit, const NodesAt& nodes_at) {
+    const double n = cell_size > 0 ? nodes_at(cell_size) : 0;
+    require(n <= static_cast<double>(most_nodes), "cell_size",
+            text("a length at which the body has at most ", most_nodes, " nodes"),
+            text(cell_size * unit, ", at which it has some ", n));
+}
 
 /// Finds the cell size at which a mesher gives about `wanted` nodes: nodes go with size^-order, then the secant in
 /// logarithms between the nearest size too coarse and the nearest too fine.

@@ -18,8 +18,28 @@ namespace springfit::cgal::detail {
 using SolidPolyhedron = CGAL::Mesh_polyhedron_3<Kernel>::type;
 /// (CGAL's own domain with features is this one and finds the sharp edges itself, which takes all of its polygon mesh
 /// processing to compile.)
-using SolidDomain = CGAL::Mesh_domain_with_polyline_features_3<
+using FeaturedDomain = CGAL::Mesh_domain_with_polyline_features_3<
     CGAL::Polyhedral_mesh_domain_3<SolidPolyhedron, Kernel, CGAL::Default, int>>;
+
+/// The domain of a solid, which allows only so many points on sharp edges. Where these nearly meet, CGAL puts ever more
+/// points on them, and takes many off again: their number in the mesh tells too late.
+class SolidDomain : public FeaturedDomain {
+public:
+    using FeaturedDomain::FeaturedDomain;
+
+    void allow_points_on_edges(std::size_t n) { m_points_allowed = n; }
+
+    [[nodiscard]] Point_3 construct_point_on_curve(const Point_3& start, const Curve_index& curve, FT distance) const {
+        if (m_points_allowed == 0) {
+            throw TooManyNodes("more nodes than are allowed on sharp edges that nearly meet");
+        }
+        --m_points_allowed;
+        return FeaturedDomain::construct_point_on_curve(start, curve, distance);
+    }
+
+private:
+    mutable std::size_t m_points_allowed = 0;
+};
 using SolidTriangulation = CGAL::Mesh_triangulation_3<SolidDomain, CGAL::Default, CGAL::Sequential_tag>::type;
 
 struct SolidComplex {

@@ -26,6 +26,12 @@ public:
     using std::runtime_error::runtime_error;
 };
 
+/// A mesh would have more nodes than are allowed.
+class TooManyNodes : public MesherFailure {
+public:
+    using MesherFailure::MesherFailure;
+};
+
 /// One meshing of a solid: a type of CGAL's.
 struct SolidComplex;
 
@@ -39,9 +45,10 @@ public:
     SolidMesher(const SolidMesher&) = delete;
     SolidMesher& operator=(const SolidMesher&) = delete;
 
-    /// Tetrahedra with edges of about `size` and facets within `distance` of the surface.
-    [[nodiscard]] SPRINGFIT_CGAL_INLINE std::shared_ptr<SolidComplex> refined(double size, double distance,
-                                                                              const std::vector<SharpLine>& lines);
+    /// Tetrahedra with edges of about `size` and facets within `distance` of the surface. Throws TooManyNodes where
+    /// that takes `most_nodes`.
+    [[nodiscard]] SPRINGFIT_CGAL_INLINE std::shared_ptr<SolidComplex>
+    refined(double size, double distance, const std::vector<SharpLine>& lines, std::size_t most_nodes);
 
     /// Moves nodes, then weighs them, so that as few dihedral angles as can be had are below `angle` (degrees).
     SPRINGFIT_CGAL_INLINE void remove_slivers(SolidComplex& complex, double angle);

@@ -13,14 +13,14 @@ namespace detail {
 
 [[nodiscard]] inline TriangleSurface repaired(const Surface& surface, const RepairOptions& options) {
     require(options.max_hole_edges >= 0, "max_hole_edges", "a number of edges not below 0", options.max_hole_edges);
-    auto result = repaired(to_soup(surface), options.max_hole_edges);
+    auto result = repaired(to_soup(surface), options.max_hole_edges, "surface");
     require(result.number_of_faces() > 0, "surface", "triangles with an area", "degenerate ones only");
     return result;
 }
 
 [[nodiscard]] inline TriangleSurface read_repaired(const std::filesystem::path& path, const RepairOptions& options) {
     require(options.max_hole_edges >= 0, "max_hole_edges", "a number of edges not below 0", options.max_hole_edges);
-    auto result = repaired(read_polygons(path), options.max_hole_edges);
+    auto result = repaired(to_soup(io::read_surface_file(path)), options.max_hole_edges, path.string());
     if (result.number_of_faces() == 0) {
         throw FileError(path.string(), "empty surface: every face is degenerate");
     }
@@ -48,11 +48,42 @@ namespace detail {
     return found;
 }
 
+/// The extent of some vertices along each axis, m.
+template <class Vertices>
+[[nodiscard]] std::array<double, 3> extent(const TriangleSurface& surface, const Vertices& vertices) {
+    CGAL::Bbox_3 box;
+    for (const auto v : vertices) {
+        box += surface.point(v).bbox();
+    }
+    return {box.xmax() - box.xmin(), box.ymax() - box.ymin(), box.zmax() - box.zmin()};
+}
+
+/// An open surface in words: how many edges bound how many holes, how large the largest is, and whether it is a sheet,
+/// which is as wide as its hole.
+[[nodiscard]] inline std::string open_in_words(const TriangleSurface& surface, const SurfaceExamination& found) {
+    const auto size = [](const std::array<double, 3>& box) { return std::hypot(box[0], box[1], box[2]); };
+    std::array<double, 3> largest{};
+    for (const auto hole : holes(surface)) {
+        const auto box = extent(surface, CGAL::vertices_around_face(hole, surface));
+        largest = size(box) > size(largest) ? box : largest;
+    }
+    const auto whole = extent(surface, surface.vertices());
+    bool is_sheet = true;
+    for (std::size_t d = 0; d < 3; ++d) {
+        is_sheet = is_sheet && largest[d] >= 0.9 * whole[d];
+    }
+    if (is_sheet) {
+        return text("a sheet: ", found.boundary_edges, " boundary edges, ", size(largest),
+                    " across (it would be a membrane; a volume is needed)");
+    }
+    return text("an open one: ", found.boundary_edges, " boundary edges around ", found.holes,
+                found.holes == 1 ? " hole, " : " holes, the largest ", size(largest), " across (the surface is ",
+                size(whole), "); close it first");
+}
+
 inline SurfaceExamination require_solid(const TriangleSurface& surface, std::string_view name) {
     const SurfaceExamination found = examine(surface);
-    require(found.holes == 0, name, "a closed surface",
-            text("an open one: ", found.boundary_edges, " boundary edges around ", found.holes,
-                 found.holes == 1 ? " hole" : " holes"));
+    require(found.holes == 0, name, "a closed surface", found.holes == 0 ? "" : open_in_words(surface, found));
     require(
         found.self_intersections == 0, name, "a surface that does not cross itself",
         text(found.self_intersections, found.self_intersections == 1 ? " pair" : " pairs", " of intersecting faces"));

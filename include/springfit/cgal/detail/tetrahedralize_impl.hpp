@@ -19,6 +19,10 @@ inline constexpr double flake_angle = 2;
 /// Pieces that hold less than this share of the volume are taken off, where one piece is wanted.
 inline constexpr double crumb_share = 0.01;
 
+/// Meshing ends at so many nodes, and so many times the wanted ones: at sharp edges that nearly meet there is no end.
+inline constexpr double few_nodes = 2000;
+inline constexpr double far_more_nodes = 10;
+
 /// Where thin parts fall apart, up to so many times the wanted nodes are tried, half as many more each time.
 inline constexpr Index most_more_nodes = 4;
 
@@ -28,6 +32,7 @@ inline void check(const TetrahedralizeOptions& options) {
     require(!by_size || (options.cell_size > 0 && std::isfinite(options.cell_size)), "cell_size", "a positive length",
             options.cell_size);
     require(by_size || options.n_nodes >= 4, "n_nodes", "at least the 4 of one tetrahedron", options.n_nodes);
+    require(options.n_nodes <= most_nodes, "n_nodes", text("at most ", most_nodes), options.n_nodes);
     require(options.sharp_edge_angle > 0 && options.sharp_edge_angle <= 180, "sharp_edge_angle",
             "an angle in (0, 180] degrees", options.sharp_edge_angle);
     require(options.surface_distance >= 0 && std::isfinite(options.surface_distance), "surface_distance",
@@ -93,8 +98,14 @@ void check_result(const Mesh<3, Scalar, Tet4>& mesh, const TetrahedralizeOptions
     return mesh;
 }
 
+/// Nodes at edge length h: about 1.4 V / h^3 inside and 0.6 A / h^2 on the surface.
+[[nodiscard]] inline double expected_nodes(const SolidSurface& solid, double h) {
+    return 1.4 * solid.volume / (h * h * h) + 0.6 * solid.area / (h * h);
+}
+
 /// Meshes at the wanted size, or at sizes that approach the wanted number of nodes, and removes slivers.
 [[nodiscard]] inline Solid refined_solid(const SolidSurface& solid, const TetrahedralizeOptions& options) {
+    const auto nodes_at = [&](double h) { return expected_nodes(solid, h); };
     // Sharp edges are kept in networks at least this many cells long, without dangling branches shorter than that: a
     // mesh could not show shorter ones.
     constexpr double shortest_network = 4;
@@ -106,14 +117,22 @@ void check_result(const Mesh<3, Scalar, Tet4>& mesh, const TetrahedralizeOptions
         interrupted = !go_on(options.progress, "mesh", fraction);
         return !interrupted;
     };
+    const double wanted = options.cell_size > 0 ? nodes_at(options.cell_size) : static_cast<double>(options.n_nodes);
+    const auto limit = static_cast<std::size_t>(few_nodes + far_more_nodes * wanted);
+    bool keeps_edges = true;
     const auto mesh_at = [&](double size) {
-        SharpEdges edges = all_edges;
-        edges.drop_short(shortest_branch * size, shortest_network * size);
         const double distance = options.surface_distance > 0 ? options.surface_distance : size / 5;
-        return mesher.refined(size, distance, edges.lines());
+        if (keeps_edges) {
+            SharpEdges edges = all_edges;
+            edges.drop_short(shortest_branch * size, shortest_network * size);
+            try {
+                return mesher.refined(size, distance, edges.lines(), limit);
+            } catch (const TooManyNodes&) {
+                keeps_edges = false; // they run nearer to each other than cells can follow
+            }
+        }
+        return mesher.refined(size, distance, {}, limit);
     };
-    // Nodes at edge length h: about 1.4 V / h^3 inside and 0.6 A / h^2 on the surface.
-    const auto nodes_at = [&](double h) { return 1.4 * solid.volume / (h * h * h) + 0.6 * solid.area / (h * h); };
     const auto complex =
         options.cell_size > 0
             ? mesh_at(options.cell_size)
@@ -137,8 +156,9 @@ template <std::floating_point Scalar>
     surface.area = in_unit(surface.area, unit * unit);
     options.cell_size /= unit;
     options.surface_distance /= unit;
+    check_cell_size(options.cell_size, unit, [&](double h) { return expected_nodes(surface, h); });
     const Index bodies = n_bodies(surface.surface);
-    const Index most_nodes = most_more_nodes * options.n_nodes;
+    const Index limit = most_more_nodes * options.n_nodes;
     Solid solid;
     for (bool is_torn = true; is_torn;) {
         try {
@@ -149,7 +169,7 @@ template <std::floating_point Scalar>
         if (!options.several_pieces) {
             solid = without_crumbs(solid, crumb_share);
         }
-        is_torn = !options.several_pieces && n_pieces(solid) > bodies && 3 * options.n_nodes / 2 <= most_nodes &&
+        is_torn = !options.several_pieces && n_pieces(solid) > bodies && 3 * options.n_nodes / 2 <= limit &&
                   options.cell_size == 0 && go_on(options.progress, "mesh", 1);
         options.n_nodes = is_torn ? 3 * options.n_nodes / 2 : options.n_nodes;
     }

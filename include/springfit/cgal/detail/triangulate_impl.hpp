@@ -5,14 +5,12 @@
 #include <array>
 #include <map>
 
-#include <boost/geometry/algorithms/within.hpp>
-
 #include <springfit/cgal/detail/body_unit.hpp>
 #include <springfit/cgal/detail/mesh_2.hpp>
-#include <springfit/cgal/detail/outline_file.hpp>
 #include <springfit/cgal/detail/pieces.hpp>
 #include <springfit/cgal/detail/size_search.hpp>
 #include <springfit/cgal/triangulate.hpp>
+#include <springfit/io/outline_file.hpp>
 
 namespace springfit::cgal {
 
@@ -29,12 +27,43 @@ inline PlaneGraph plane_graph(const Outline& outline) {
     return graph;
 }
 
+template <class Number>
+[[nodiscard]] Eigen::Matrix<Number, 2, Eigen::Dynamic> columns(const std::vector<std::array<Number, 2>>& list) {
+    Eigen::Matrix<Number, 2, Eigen::Dynamic> matrix(2, static_cast<Index>(list.size()));
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        matrix.col(static_cast<Index>(i)) << list[i][0], list[i][1];
+    }
+    return matrix;
+}
+
+/// True for a point, which lies on no segment, inside a ring: a ray along x crosses the ring an odd number of times.
+[[nodiscard]] inline bool is_in_ring(const Points<2, double>& points, const std::vector<int>& ring,
+                                     const Vector<2, double>& p) {
+    bool is_inside = false;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        const Vector<2, double> a = points.col(ring[i]);
+        const Vector<2, double> b = points.col(ring[(i + 1) % ring.size()]);
+        if ((a.y() > p.y()) != (b.y() > p.y()) && p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) {
+            is_inside = !is_inside;
+        }
+    }
+    return is_inside;
+}
+
+/// True for a point inside the outer ring of an area and outside of its holes.
+[[nodiscard]] inline bool is_in_area(const Points<2, double>& points, const io::OutlineFile::Area& area,
+                                     const Vector<2, double>& p) {
+    const auto is_in = [&](const std::vector<int>& ring) { return is_in_ring(points, ring, p); };
+    return !area.empty() && is_in(area.front()) && std::none_of(area.begin() + 1, area.end(), is_in);
+}
+
 inline void check(const TriangulateOptions& options) {
     const bool by_size = options.cell_size != 0;
     require(by_size != (options.n_nodes != 0), "cell_size, n_nodes", "one of the two", by_size ? "both" : "neither");
     require(!by_size || (options.cell_size > 0 && std::isfinite(options.cell_size)), "cell_size", "a positive length",
             options.cell_size);
     require(by_size || options.n_nodes >= 3, "n_nodes", "at least the 3 of one triangle", options.n_nodes);
+    require(options.n_nodes <= most_nodes, "n_nodes", text("at most ", most_nodes), options.n_nodes);
 }
 
 template <std::floating_point Scalar>
@@ -58,6 +87,7 @@ template <std::floating_point Scalar>
     }
     // Nodes at edge length h: about 1.15 A / h^2 inside and half a node per h of boundary.
     const auto nodes_at = [&](double h) { return 1.15 * area / (h * h) + 0.5 * perimeter / h; };
+    check_cell_size(options.cell_size, unit, nodes_at);
     const auto mesh_at = [&](double size) { return mesher.refined(size); };
     const auto triangulation =
         options.cell_size > 0
@@ -81,6 +111,10 @@ template <std::floating_point Scalar>
 SPRINGFIT_CGAL_INLINE Outline checked(const Outline& outline, std::string_view name) {
     require(outline.points.allFinite() && outline.holes.allFinite(), name, "finite coordinates",
             "one that is not finite");
+    if (outline.points.cols() > 0) {
+        detail::check_extent((outline.points.rowwise().maxCoeff() - outline.points.rowwise().minCoeff()).maxCoeff(),
+                             name);
+    }
     std::map<std::array<double, 2>, int> number;
     std::vector<std::array<int, 2>> segments;
     std::map<int, int> n_segments_at;
@@ -135,49 +169,23 @@ SPRINGFIT_CGAL_INLINE Outline checked(const Outline& outline, std::string_view n
 }
 
 SPRINGFIT_CGAL_INLINE Outline read_outline(const std::filesystem::path& path) {
-    const std::string name = path.string();
-    const std::string extension = detail::lower_extension(path);
-    if (extension != ".poly" && extension != ".wkt") {
-        throw FileError(name, "unknown kind of outline file '" + extension + "'; .poly and .wkt are read");
-    }
-    detail::require_readable(path);
-    detail::OutlineFile file = extension == ".poly" ? detail::read_poly(path) : detail::read_wkt(path);
-    if (file.segments.empty()) {
-        throw FileError(name, "empty outline: no segments");
-    }
-    const auto columns = [](const auto& list, auto& matrix) {
-        matrix.resize(2, static_cast<Index>(list.size()));
-        for (std::size_t i = 0; i < list.size(); ++i) {
-            matrix.col(static_cast<Index>(i)) << list[i][0], list[i][1];
-        }
-    };
-    Outline outline;
-    columns(file.points, outline.points);
-    columns(file.segments, outline.segments);
-    columns(file.holes, outline.holes);
-    outline = checked(outline, name);
+    const io::OutlineFile file = io::read_outline_file(path);
+    Outline outline{detail::columns(file.points), detail::columns(file.segments), detail::columns(file.holes)};
+    outline = checked(outline, file.file);
     if (!file.areas.empty()) { // what lies in none of the areas is a hole
         const double unit = detail::body_unit<2>(outline.points);
-        const auto in_unit = [unit](auto& ring) {
-            for (auto& point : ring) {
-                point = {detail::in_unit(point.x(), unit), detail::in_unit(point.y(), unit)};
-            }
-        };
-        for (auto& area : file.areas) {
-            in_unit(area.outer());
-            std::for_each(area.inners().begin(), area.inners().end(), in_unit);
-        }
+        const Points<2, double> points = detail::in_unit<2>(detail::columns(file.points), unit);
         Outline scaled = outline;
         scaled.points = detail::in_unit<2>(outline.points, unit);
         std::vector<std::array<double, 2>> holes;
         for (const auto& point : detail::PlaneMesher(detail::plane_graph(scaled)).region_points()) {
-            const detail::OutlineFile::Point p(point.x(), point.y());
+            const Vector<2, double> p(point.x(), point.y());
             if (std::none_of(file.areas.begin(), file.areas.end(),
-                             [&](const auto& area) { return boost::geometry::within(p, area); })) {
-                holes.push_back({point.x() * unit, point.y() * unit});
+                             [&](const auto& area) { return detail::is_in_area(points, area, p); })) {
+                holes.push_back({p.x() * unit, p.y() * unit});
             }
         }
-        columns(holes, outline.holes);
+        outline.holes = detail::columns(holes);
     }
     return outline;
 }

@@ -47,30 +47,36 @@ public:
                 break;
             }
             const std::string section(m_scanner.word("a section"));
-            if (section == "$Nodes") {
-                m_version == 2 ? read_nodes_2() : read_nodes_4();
+            if (section == (m_version == 1 ? "$NOD" : "$Nodes")) {
+                m_version < 4 ? read_nodes_2() : read_nodes_4();
                 nodes = true;
             } else if (section == "$ParametricNodes") {
                 m_scanner.refuse("$ParametricNodes; save the mesh without parametric coordinates");
-            } else if (section == "$Elements") {
+            } else if (section == (m_version == 1 ? "$ELM" : "$Elements")) {
                 if (!nodes) {
-                    m_scanner.refuse("$Elements before $Nodes");
+                    m_scanner.refuse(text(section, " before ", m_version == 1 ? "$NOD" : "$Nodes"));
                 }
-                m_version == 2 ? read_elements_2() : read_elements_4();
+                m_version == 1 ? read_elements_1() : m_version == 2 ? read_elements_2() : read_elements_4();
                 elements = true;
             }
-            m_scanner.skip_past("$End" + section.substr(1));
+            m_scanner.skip_past((m_version == 1 ? "$END" : "$End") + section.substr(1));
         }
         if (!elements) {
-            throw FileError(m_scanner.file(), text("has no section ", nodes ? "$Elements" : "$Nodes"));
+            const bool is_1 = m_version == 1;
+            throw FileError(m_scanner.file(), text("has no section ",
+                                                   nodes ? (is_1 ? "$ELM" : "$Elements") : (is_1 ? "$NOD" : "$Nodes")));
         }
         return std::move(m_collector).finish();
     }
 
 private:
     void read_format() {
+        if (m_scanner.peek() == "$NOD") {
+            m_version = 1; // which has no section on its format
+            return;
+        }
         if (m_scanner.peek() != "$MeshFormat") {
-            m_scanner.refuse("expected $MeshFormat: not a Gmsh file, or of version 1");
+            m_scanner.refuse("expected $MeshFormat, or $NOD of version 1: not a Gmsh file");
         }
         m_scanner.skip_line();
         const std::string version(m_scanner.word("the version"));
@@ -117,6 +123,25 @@ private:
         for (long long i = 0; i < n; ++i) {
             const long long tag = small("the number of a node");
             m_collector.add_point(tag, position());
+        }
+    }
+
+    void read_elements_1() {
+        const long long n = m_scanner.count("the number of elements");
+        std::vector<long long> nodes;
+        for (long long read = 0; read < n; ++read) {
+            (void)small("the number of an element");
+            const FileCell& type = cell_type(small("the type of an element"));
+            const long long region = small("the number of a physical group");
+            (void)small("the number of an entity");
+            if (const long long n_nodes = small("the number of nodes"); n_nodes != type.n_nodes) {
+                m_scanner.refuse(text("expected ", type.n_nodes, " nodes, as ", type.plural, " have, found ", n_nodes));
+            }
+            nodes.clear();
+            for (int a = 0; a < type.n_nodes; ++a) {
+                nodes.push_back(small("the number of a node"));
+            }
+            m_collector.add_cell(type, nodes, region);
         }
     }
 

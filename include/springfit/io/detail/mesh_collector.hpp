@@ -42,13 +42,16 @@ public:
         m_numbers.reserve(static_cast<std::size_t>(n));
     }
 
-    void add_point(long long number, const std::array<double, 3>& position) {
+    void add_point(long long number, const std::array<double, 3>& position) { add_point(number, position, *m_scanner); }
+
+    /// A point that comes from another file than the cells do.
+    void add_point(long long number, const std::array<double, 3>& position, const TextScanner& scanner) {
         if (!m_numbers.emplace(number, static_cast<int>(m_points.size())).second) {
-            m_scanner->refuse(text("point ", number, " is there twice"));
+            scanner.refuse(text("point ", number, " is there twice"));
         }
         for (const double coordinate : position) {
             if (!std::isfinite(coordinate)) {
-                m_scanner->refuse(text("point ", number, " is not finite"));
+                scanner.refuse(text("point ", number, " is not finite"));
             }
         }
         m_points.push_back(position);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cctype>
-
 #include <springfit/io/detail/mesh_collector.hpp>
 #include <springfit/io/detail/read_text.hpp>
 
@@ -78,123 +76,6 @@ inline constexpr std::array<FileCell, 7> medit_cells{{
     return std::move(collector).finish();
 }
 
-// VTK legacy: POINTS, CELLS (with offsets from version 5 on), CELL_TYPES; numbers from 0.
-
-inline constexpr std::array<FileCell, 11> vtk_cells{{
-    {1, 0, 1, "points", std::nullopt},
-    {3, 1, 2, "lines", std::nullopt},
-    {5, 2, 3, "triangles", CellKind::triangle},
-    {9, 2, 4, "quadrilaterals", CellKind::quadrilateral},
-    {10, 3, 4, "tetrahedra", CellKind::tetrahedron},
-    {12, 3, 8, "hexahedra", CellKind::hexahedron},
-    {13, 3, 6, "prisms", std::nullopt},
-    {14, 3, 5, "pyramids", std::nullopt},
-    {21, 1, 3, "quadratic lines", std::nullopt},
-    {22, 2, 6, "quadratic triangles", CellKind::quadratic_triangle},
-    {24, 3, 10, "quadratic tetrahedra", CellKind::quadratic_tetrahedron},
-}};
-
-/// The nodes of all cells in a row, and where each cell begins and the last one ends.
-struct VtkCells {
-    std::vector<long long> offsets{0};
-    std::vector<long long> nodes;
-};
-
-[[nodiscard]] inline VtkCells read_vtk_cells(TextScanner& scanner) {
-    const long long n = scanner.count("the number of cells");
-    const long long size = scanner.count("the size of the list of cells");
-    scanner.check_size(n, "cells");
-    scanner.check_size(size, "numbers of nodes");
-    VtkCells cells;
-    if (scanner.peek() != "OFFSETS") {
-        for (long long c = 0; c < n; ++c) {
-            const long long n_nodes = scanner.count("the number of nodes of a cell");
-            scanner.check_size(n_nodes, "nodes of a cell");
-            for (long long a = 0; a < n_nodes; ++a) {
-                cells.nodes.push_back(scanner.whole("the number of a node"));
-            }
-            cells.offsets.push_back(static_cast<long long>(cells.nodes.size()));
-        }
-        return cells;
-    }
-    scanner.skip_line();
-    cells.offsets.clear();
-    for (long long c = 0; c < n; ++c) {
-        cells.offsets.push_back(scanner.count("an offset"));
-        if (cells.offsets.back() > size ||
-            (c > 0 && cells.offsets.back() < cells.offsets[static_cast<std::size_t>(c - 1)])) {
-            scanner.refuse(text("expected offsets that ascend to ", size, ", found ", cells.offsets.back()));
-        }
-    }
-    if (scanner.word("CONNECTIVITY") != "CONNECTIVITY") {
-        scanner.refuse("expected CONNECTIVITY");
-    }
-    scanner.skip_line();
-    for (long long a = 0; a < size; ++a) {
-        cells.nodes.push_back(scanner.whole("the number of a node"));
-    }
-    return cells;
-}
-
-[[nodiscard]] inline MeshFile read_vtk(TextScanner& scanner) {
-    if (!scanner.line().starts_with("# vtk DataFile")) {
-        throw FileError(scanner.file(), 1, "expected # vtk DataFile: not a VTK legacy file");
-    }
-    (void)scanner.line(); // the title
-    const std::string form(scanner.word("ASCII"));
-    if (form != "ASCII") {
-        scanner.refuse(text("expected ASCII, found ", form, "; save it as text"));
-    }
-    (void)scanner.word("DATASET");
-    const std::string dataset(scanner.word("UNSTRUCTURED_GRID"));
-    if (dataset != "UNSTRUCTURED_GRID") {
-        scanner.refuse(text("expected UNSTRUCTURED_GRID, found ", dataset));
-    }
-    MeshCollector collector(scanner);
-    VtkCells cells;
-    for (;;) {
-        const std::string section(scanner.peek());
-        if (section.empty() || section == "CELL_DATA" || section == "POINT_DATA") {
-            throw FileError(scanner.file(), "has no section CELL_TYPES");
-        }
-        (void)scanner.word("a section");
-        if (section == "POINTS") {
-            const long long n = scanner.count("the number of points");
-            (void)scanner.word("a type");
-            collector.reserve_points(n);
-            for (long long i = 0; i < n; ++i) {
-                const double x = scanner.number("a coordinate");
-                const double y = scanner.number("a coordinate");
-                collector.add_point(i, {x, y, scanner.number("a coordinate")});
-            }
-        } else if (section == "CELLS") {
-            cells = read_vtk_cells(scanner);
-        } else if (section == "CELL_TYPES") {
-            const long long n = scanner.count("the number of cells");
-            if (n + 1 > static_cast<long long>(cells.offsets.size())) {
-                scanner.refuse(text("expected the types of ", cells.offsets.size() - 1, " cells, found ", n));
-            }
-            for (std::size_t c = 0; c < static_cast<std::size_t>(n); ++c) {
-                const long long code = scanner.whole("the type of a cell");
-                const FileCell* type = find_cell(vtk_cells, code);
-                if (type == nullptr) {
-                    scanner.refuse(text("cells of VTK's type ", code, " are not known"));
-                }
-                const auto n_nodes = cells.offsets[c + 1] - cells.offsets[c];
-                if (n_nodes != type->n_nodes) {
-                    scanner.refuse(text("cell ", c, ", one of the ", type->plural, ", has ", n_nodes, " nodes"));
-                }
-                collector.add_cell(
-                    *type, std::span(cells.nodes)
-                               .subspan(static_cast<std::size_t>(cells.offsets[c]), static_cast<std::size_t>(n_nodes)));
-            }
-            return std::move(collector).finish();
-        } else {
-            scanner.skip_line(); // METADATA and the like
-        }
-    }
-}
-
 // TetGen and Triangle: two files, numbers from 0 or 1 as the first point says. The nodes on edges come in an order of
 // their own; only corners are taken.
 
@@ -205,22 +86,29 @@ inline constexpr std::array<FileCell, 4> tetgen_cells{{
     {310, 3, 10, "quadratic tetrahedra", CellKind::tetrahedron},
 }};
 
+/// A number that a header may leave out, where it is 0.
+[[nodiscard]] inline long long tetgen_count(TextScanner& scanner, std::string_view expected) {
+    return scanner.at_line_end() ? 0 : scanner.count(expected);
+}
+
 [[nodiscard]] inline MeshFile read_tetgen(const std::filesystem::path& path) {
     auto node_path = path;
     auto cell_path = path;
     node_path.replace_extension(".node");
     cell_path.replace_extension(".ele");
-    TextScanner points(node_path.string(), read_text(node_path), '#');
-    TextScanner cells(cell_path.string(), read_text(cell_path), '#');
+    TextScanner points(node_path.string(), read_text(node_path), {.comment = '#'});
+    TextScanner cells(cell_path.string(), read_text(cell_path), {.comment = '#'});
 
     const long long n_points = points.count("the number of points");
     const long long dimension = points.count("the dimension");
-    const long long attributes = points.count("the number of attributes") + points.count("the number of markers");
+    const long long n_attributes = tetgen_count(points, "the number of attributes");
+    const long long attributes = n_attributes + tetgen_count(points, "the number of markers");
     if (dimension != 2 && dimension != 3) {
         points.refuse(text("expected dimension 2 or 3, found ", dimension));
     }
     MeshCollector collector(cells);
     points.check_size(n_points, "points");
+    points.check_size(attributes, "attributes");
     for (long long i = 0; i < n_points; ++i) {
         const long long number = points.whole("the number of a point");
         std::array<double, 3> position{};
@@ -230,11 +118,11 @@ inline constexpr std::array<FileCell, 4> tetgen_cells{{
         for (long long a = 0; a < attributes; ++a) {
             (void)points.number("an attribute");
         }
-        collector.add_point(number, position);
+        collector.add_point(number, position, points);
     }
     const long long n_cells = cells.count("the number of cells");
     const long long n_nodes = cells.count("the number of nodes of a cell");
-    const long long cell_attributes = cells.count("the number of attributes");
+    const long long cell_attributes = tetgen_count(cells, "the number of attributes");
     const FileCell* type = find_cell(tetgen_cells, 100 * dimension + n_nodes);
     if (type == nullptr) {
         cells.refuse(text("cells of ", n_nodes, " nodes in dimension ", dimension, " are not known"));
