@@ -111,7 +111,7 @@ SolidMesher::refined(double size, double distance, const std::vector<SharpLine>&
                most_nodes);
     });
     if (result->complex.triangulation().number_of_vertices() >= most_nodes) {
-        throw TooManyNodes(text("more than ", most_nodes, " nodes that thin parts and sharp edges ask for"));
+        throw TooManyNodes(text("thin parts and sharp edges that take more than ", most_nodes));
     }
     return result;
 }

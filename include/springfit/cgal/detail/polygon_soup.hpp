@@ -81,21 +81,6 @@ private:
     std::unordered_map<std::uint64_t, std::vector<Entry>> m_boxes;
 };
 
-/// Drops corners that follow themselves, and those where a polygon turns back on itself.
-inline void drop_repeated_corners(PolygonSoup::Polygon& polygon) {
-    for (std::size_t i = 0; i < polygon.size() && polygon.size() >= 3;) {
-        const std::size_t n = polygon.size();
-        const std::size_t next = polygon[(i + 1) % n];
-        const bool is_spike = polygon[(i + n - 1) % n] == next;
-        if (polygon[i] != next && !is_spike) {
-            ++i;
-            continue;
-        }
-        polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(i));
-        i = i < 2 ? 0 : i - 2; // its neighbours may now be such corners
-    }
-}
-
 /// The lowest corner of the points that polygons use, and the largest extent.
 [[nodiscard]] inline std::pair<std::array<double, 3>, double> lowest_and_extent(const PolygonSoup& soup) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -110,6 +95,33 @@ inline void drop_repeated_corners(PolygonSoup::Polygon& polygon) {
         }
     }
     return {low, std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2], 0.})};
+}
+
+/// Rounds points to the grid that meshers work on, 2^-40 of the body: what is thinner has no area then, and is dropped.
+inline void round_to_grid(PolygonSoup& soup) {
+    const double extent = lowest_and_extent(soup).second;
+    if (extent > 0 && std::isfinite(extent)) {
+        for (auto& point : soup.points) {
+            for (double& x : point) {
+                x = in_unit(x, extent) * extent;
+            }
+        }
+    }
+}
+
+/// Drops corners that follow themselves, and those where a polygon turns back on itself.
+inline void drop_repeated_corners(PolygonSoup::Polygon& polygon) {
+    for (std::size_t i = 0; i < polygon.size() && polygon.size() >= 3;) {
+        const std::size_t n = polygon.size();
+        const std::size_t next = polygon[(i + 1) % n];
+        const bool is_spike = polygon[(i + n - 1) % n] == next;
+        if (polygon[i] != next && !is_spike) {
+            ++i;
+            continue;
+        }
+        polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(i));
+        i = i < 2 ? 0 : i - 2; // its neighbours may now be such corners
+    }
 }
 
 /// Merges points that are near to each other into the first of them, and coordinates near to 0 into 0. Polygons keep

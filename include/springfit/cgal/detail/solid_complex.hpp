@@ -8,6 +8,7 @@
 #include <CGAL/Mesh_polyhedron_3.h>
 #include <CGAL/Mesh_triangulation_3.h>
 #include <CGAL/Polyhedral_mesh_domain_3.h>
+#include <CGAL/assertions_behaviour.h>
 #include <CGAL/exceptions.h>
 
 #include <springfit/cgal/detail/kernel.hpp>
@@ -31,7 +32,7 @@ public:
 
     [[nodiscard]] Point_3 construct_point_on_curve(const Point_3& start, const Curve_index& curve, FT distance) const {
         if (m_points_allowed == 0) {
-            throw TooManyNodes("more nodes than are allowed on sharp edges that nearly meet");
+            throw TooManyNodes("sharp edges that nearly meet");
         }
         --m_points_allowed;
         return FeaturedDomain::construct_point_on_curve(start, curve, distance);
@@ -59,9 +60,23 @@ struct SolidMesher::State {
     std::vector<SharpLine> lines;
 };
 
+/// While it lives, CGAL does not print what it then throws.
+class QuietErrors {
+public:
+    QuietErrors()
+        : m_previous(CGAL::set_error_handler([](const char*, const char*, const char*, int, const char*) {})) {}
+    QuietErrors(const QuietErrors&) = delete;
+    QuietErrors& operator=(const QuietErrors&) = delete;
+    ~QuietErrors() { CGAL::set_error_handler(m_previous); }
+
+private:
+    CGAL::Failure_function m_previous;
+};
+
 /// Calls `meshing`, whose failures in CGAL become MesherFailure.
 template <class Meshing>
 void without_failure(const Meshing& meshing) {
+    const QuietErrors quiet;
     try {
         meshing();
     } catch (const CGAL::Failure_exception& failure) {

@@ -11,16 +11,27 @@ namespace springfit::cgal {
 
 namespace detail {
 
-[[nodiscard]] inline TriangleSurface repaired(const Surface& surface, const RepairOptions& options) {
+/// `for_mesher`: the points are rounded to the mesher's grid first.
+[[nodiscard]] inline TriangleSurface repaired(const Surface& surface, const RepairOptions& options,
+                                              bool for_mesher = false) {
     require(options.max_hole_edges >= 0, "max_hole_edges", "a number of edges not below 0", options.max_hole_edges);
-    auto result = repaired(to_soup(surface), options.max_hole_edges, "surface");
+    PolygonSoup soup = to_soup(surface);
+    if (for_mesher) {
+        round_to_grid(soup);
+    }
+    auto result = repaired(std::move(soup), options.max_hole_edges, "surface");
     require(result.number_of_faces() > 0, "surface", "triangles with an area", "degenerate ones only");
     return result;
 }
 
-[[nodiscard]] inline TriangleSurface read_repaired(const std::filesystem::path& path, const RepairOptions& options) {
+[[nodiscard]] inline TriangleSurface read_repaired(const std::filesystem::path& path, const RepairOptions& options,
+                                                   bool for_mesher = false) {
     require(options.max_hole_edges >= 0, "max_hole_edges", "a number of edges not below 0", options.max_hole_edges);
-    auto result = repaired(to_soup(io::read_surface_file(path)), options.max_hole_edges, path.string());
+    PolygonSoup soup = to_soup(io::read_surface_file(path));
+    if (for_mesher) {
+        round_to_grid(soup);
+    }
+    auto result = repaired(std::move(soup), options.max_hole_edges, path.string());
     if (result.number_of_faces() == 0) {
         throw FileError(path.string(), "empty surface: every face is degenerate");
     }
@@ -115,12 +126,12 @@ inline SurfaceExamination require_solid(const TriangleSurface& surface, std::str
 
 SPRINGFIT_CGAL_INLINE SolidSurface solid_surface(const Surface& surface, const RepairOptions& options,
                                                  double sharp_edge_angle, std::string_view name) {
-    return solid_surface(repaired(surface, options), sharp_edge_angle, name);
+    return solid_surface(repaired(surface, options, true), sharp_edge_angle, name);
 }
 
 SPRINGFIT_CGAL_INLINE SolidSurface read_solid_surface(const std::filesystem::path& path, const RepairOptions& options,
                                                       double sharp_edge_angle) {
-    return solid_surface(read_repaired(path, options), sharp_edge_angle, path.string());
+    return solid_surface(read_repaired(path, options, true), sharp_edge_angle, path.string());
 }
 
 } // namespace detail

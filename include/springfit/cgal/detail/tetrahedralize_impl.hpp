@@ -23,6 +23,9 @@ inline constexpr double crumb_share = 0.01;
 inline constexpr double few_nodes = 2000;
 inline constexpr double far_more_nodes = 10;
 
+/// A body is refused where one cell across its mean thickness would make so many times the most nodes.
+inline constexpr double far_too_thin = 100;
+
 /// Where thin parts fall apart, up to so many times the wanted nodes are tried, half as many more each time.
 inline constexpr Index most_more_nodes = 4;
 
@@ -103,6 +106,18 @@ void check_result(const Mesh<3, Scalar, Tet4>& mesh, const TetrahedralizeOptions
     return 1.4 * solid.volume / (h * h * h) + 0.6 * solid.area / (h * h);
 }
 
+/// Nodes at which meshing ends. Throws TooManyNodes for a body that is far too thin for them: CGAL may not come to an
+/// end there.
+[[nodiscard]] inline std::size_t node_limit(const SolidSurface& solid, double wanted) {
+    const double limit = few_nodes + far_more_nodes * wanted;
+    const double thickness = 2 * solid.volume / solid.area;
+    const double needed = expected_nodes(solid, thickness);
+    if (!(needed <= far_too_thin * limit)) {
+        throw TooManyNodes(text("a mean thickness of ", thickness, " of its extent, which takes some ", needed));
+    }
+    return static_cast<std::size_t>(limit);
+}
+
 /// Meshes at the wanted size, or at sizes that approach the wanted number of nodes, and removes slivers.
 [[nodiscard]] inline Solid refined_solid(const SolidSurface& solid, const TetrahedralizeOptions& options) {
     const auto nodes_at = [&](double h) { return expected_nodes(solid, h); };
@@ -117,8 +132,8 @@ void check_result(const Mesh<3, Scalar, Tet4>& mesh, const TetrahedralizeOptions
         interrupted = !go_on(options.progress, "mesh", fraction);
         return !interrupted;
     };
-    const double wanted = options.cell_size > 0 ? nodes_at(options.cell_size) : static_cast<double>(options.n_nodes);
-    const auto limit = static_cast<std::size_t>(few_nodes + far_more_nodes * wanted);
+    const std::size_t limit =
+        node_limit(solid, options.cell_size > 0 ? nodes_at(options.cell_size) : static_cast<double>(options.n_nodes));
     bool keeps_edges = true;
     const auto mesh_at = [&](double size) {
         const double distance = options.surface_distance > 0 ? options.surface_distance : size / 5;
@@ -163,6 +178,9 @@ template <std::floating_point Scalar>
     for (bool is_torn = true; is_torn;) {
         try {
             solid = without_flakes(refined_solid(surface, options), flake_angle);
+        } catch (const TooManyNodes& failure) {
+            throw InvalidArgument(name, "parts so thick that the wanted nodes can fill them (ask for more)",
+                                  failure.what());
         } catch (const MesherFailure& failure) {
             throw InvalidArgument(name, "a surface that CGAL's mesher can follow", failure.what());
         }
