@@ -177,7 +177,8 @@ TEST_CASE("what is wrong with a file is said with its name and line") {
     };
     CHECK(contains(read("n.poly", replaced(plate_poly, "2 4 0 1", "2 4 nan 1")),
                    "n.poly:4: a coordinate is not finite: nan"));
-    CHECK(contains(read("w.poly", replaced(plate_poly, "2 4 0 1", "2 4 four 1")), "w.poly:4: expected a coordinate, found \"four\""));
+    CHECK(contains(read("w.poly", replaced(plate_poly, "2 4 0 1", "2 4 four 1")),
+                   "w.poly:4: expected a coordinate, found \"four\""));
     CHECK(contains(read("s.poly", replaced(plate_poly, "2 4 0 1", "2 4")),
                    "s.poly:4: expected two coordinates of a vertex, found the end of the line"));
     CHECK(contains(read("i.poly", replaced(plate_poly, "2 2 3 5", "2 2 9 5")),
@@ -192,7 +193,26 @@ TEST_CASE("what is wrong with a file is said with its name and line") {
     CHECK(contains(read("h.wkt", "\nPOLYGON ((0 0, 4 0, 4 3, 0 0), (1 1, 2 1, 2 2))\n"), "h.wkt:2: hole 1 is open"));
     CHECK(contains(read("l.wkt", "LINESTRING (0 0, 1 1)\n"),
                    "l.wkt:1: expected POLYGON or MULTIPOLYGON, found LINESTRING"));
-    CHECK(contains(read("b.wkt", "POLYGON ((0 0, 4 0, 4 3, 0 3, 0 0)\n"), "b.wkt:1: "));
+    CHECK(contains(read("b.wkt", "POLYGON ((0 0, 4 0, 4 3, 0 3, 0 0)\n"),
+                   "b.wkt:2: expected ), found the end of the file"));
     CHECK(contains(read("e.wkt", "POLYGON EMPTY\n"), "empty outline"));
     CHECK(contains(read("x.wkt", "POLYGON ((0 0, 1 1, 1 0, 0 1, 0 0))\n"), "1 pair that cross, touch or overlap"));
+}
+
+TEST_CASE("outlines with points, segments and angles as near as can be end, meshed or refused") {
+    for (const double gap : {1e-3, 1e-5, 1e-7, 1e-9, 1e-12, 1e-16, 1e-310}) {
+        CAPTURE(gap);
+        cgal::Outline outline;
+        outline.segments.resize(2, 5);
+        outline.segments << 0, 1, 2, 3, 4, 1, 2, 3, 4, 0;
+        outline.points.resize(2, 5);
+        outline.points << 0, 4, 4, gap, 0, 0, 0, 3, 3, 3; // two points side by side
+        CHECK(relative(area(cgal::triangulate<double>(outline, {.n_nodes = 60})), 12., 12.) < 1e-2);
+        outline.points << 0, 4, 4, 2, 0, 0, 0, gap, gap, gap; // a strip
+        const std::string strip = message([&] { (void)cgal::triangulate<double>(outline, {.n_nodes = 60}); });
+        CHECK((gap > 1e-4 || strip.starts_with("outline: expected ")));
+        outline.points << 0, 4, 4, 2, 0, 0, 0, 3, gap, 3; // a corner that nearly meets the other side
+        const std::string notch = message([&] { (void)cgal::triangulate<double>(outline, {.n_nodes = 60}); });
+        CHECK((notch.empty() || notch.starts_with("outline: expected ")));
+    }
 }

@@ -26,7 +26,7 @@ struct TriangulateOptions {
     ProgressCallback progress{}; ///< called after each meshing; returning false takes the best mesh so far
 };
 
-/// An outline with points given twice merged, segments given twice and those without length dropped.
+/// An outline with points nearer than 1e-6 of its extent merged, segments given twice and those without length dropped.
 ///
 /// Throws InvalidArgument, naming `name`: for an outline that is empty, that has a coordinate that is not finite, that
 /// is open (how many loose ends), or whose segments cross, touch or overlap (how many pairs). O(n log n).
@@ -40,8 +40,9 @@ struct TriangulateOptions {
 /// Cuts the inside of an outline into triangles by constrained Delaunay refinement.
 ///
 /// No angle comes out below 20.7 degrees except at sharper corners of the outline. The same input gives the same mesh.
-/// Throws InvalidArgument for an option out of range, as `checked`, for a hole's point that lies outside, and where the
-/// mesh falls into pieces. O(n_nodes log n_nodes) per meshing.
+/// Throws InvalidArgument for an option out of range, as `checked`, for a hole's point that lies outside, for parts so
+/// thin that they take ten times the nodes wanted, and where the mesh falls into pieces. O(n_nodes log n_nodes) per
+/// meshing.
 template <std::floating_point Scalar>
 [[nodiscard]] Mesh<2, Scalar, Tri3> triangulate(const Outline& outline, const TriangulateOptions& options);
 

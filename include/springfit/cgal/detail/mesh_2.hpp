@@ -122,12 +122,14 @@ public:
     }
 
     /// Triangles with edges of about `size`, no angle below 20.7 degrees except at sharp corners of the outline.
-    [[nodiscard]] Triangulation refined(double size) const {
+    /// Ends, unfinished, at `most_nodes`.
+    [[nodiscard]] Triangulation refined(double size, std::size_t most_nodes) const {
         Triangulation triangulation = m_triangulation;
         CGAL::Delaunay_mesher_2<Triangulation, CGAL::Delaunay_mesh_size_criteria_2<Triangulation>> mesher(
             triangulation, CGAL::Delaunay_mesh_size_criteria_2<Triangulation>(0.125, longest * size));
         mesher.init(true);
-        mesher.refine_mesh();
+        while (triangulation.number_of_vertices() < most_nodes && mesher.step_by_step_refine_mesh()) {
+        }
         return triangulation;
     }
 

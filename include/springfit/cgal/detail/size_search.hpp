@@ -14,6 +14,10 @@ namespace springfit::cgal::detail {
 /// More nodes than this are refused before work begins.
 inline constexpr Index most_nodes = 20000000;
 
+/// Meshing ends at so many nodes, and so many times the wanted ones: at sharp edges that nearly meet there is no end.
+inline constexpr double few_nodes = 2000;
+inline constexpr double far_more_nodes = 10;
+
 /// Throws InvalidArgument for a cell size, in units of `unit` (m), at which there would be too many nodes; 0 is none.
 template <class NodesAt>
 void check_cell_size(double cell_size, double unit, const NodesAt& nodes_at) {

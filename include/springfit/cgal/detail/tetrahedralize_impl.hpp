@@ -19,10 +19,6 @@ inline constexpr double flake_angle = 2;
 /// Pieces that hold less than this share of the volume are taken off, where one piece is wanted.
 inline constexpr double crumb_share = 0.01;
 
-/// Meshing ends at so many nodes, and so many times the wanted ones: at sharp edges that nearly meet there is no end.
-inline constexpr double few_nodes = 2000;
-inline constexpr double far_more_nodes = 10;
-
 /// A body is refused where one cell across its mean thickness would make so many times the most nodes.
 inline constexpr double far_too_thin = 100;
 

@@ -7,6 +7,7 @@
 
 #include <springfit/cgal/detail/body_unit.hpp>
 #include <springfit/cgal/detail/mesh_2.hpp>
+#include <springfit/cgal/detail/near_points.hpp>
 #include <springfit/cgal/detail/pieces.hpp>
 #include <springfit/cgal/detail/size_search.hpp>
 #include <springfit/cgal/triangulate.hpp>
@@ -88,7 +89,15 @@ template <std::floating_point Scalar>
     // Nodes at edge length h: about 1.15 A / h^2 inside and half a node per h of boundary.
     const auto nodes_at = [&](double h) { return 1.15 * area / (h * h) + 0.5 * perimeter / h; };
     check_cell_size(options.cell_size, unit, nodes_at);
-    const auto mesh_at = [&](double size) { return mesher.refined(size); };
+    const double wanted = options.cell_size > 0 ? nodes_at(options.cell_size) : static_cast<double>(options.n_nodes);
+    const auto limit = static_cast<std::size_t>(few_nodes + far_more_nodes * wanted);
+    const auto mesh_at = [&](double size) {
+        auto mesh = mesher.refined(size, limit);
+        require(mesh.number_of_vertices() < limit, name,
+                "parts so thick that the wanted nodes can fill them (ask for more)",
+                text("thin parts that take more than ", limit));
+        return mesh;
+    };
     const auto triangulation =
         options.cell_size > 0
             ? mesh_at(options.cell_size)
@@ -111,11 +120,14 @@ template <std::floating_point Scalar>
 SPRINGFIT_CGAL_INLINE Outline checked(const Outline& outline, std::string_view name) {
     require(outline.points.allFinite() && outline.holes.allFinite(), name, "finite coordinates",
             "one that is not finite");
-    if (outline.points.cols() > 0) {
-        detail::check_extent((outline.points.rowwise().maxCoeff() - outline.points.rowwise().minCoeff()).maxCoeff(),
-                             name);
-    }
-    std::map<std::array<double, 2>, int> number;
+    const double extent = outline.points.cols() > 0
+                              ? (outline.points.rowwise().maxCoeff() - outline.points.rowwise().minCoeff()).maxCoeff()
+                              : 0.;
+    detail::check_extent(extent, name);
+    const Vector<2, double> lowest =
+        outline.points.cols() > 0 ? Vector<2, double>(outline.points.rowwise().minCoeff()) : Vector<2, double>(0, 0);
+    detail::NearPoints near({lowest.x(), lowest.y(), 0}, extent > 0 ? detail::merge_share * extent : 1.);
+    std::vector<Vector<2, double>> points;
     std::vector<std::array<int, 2>> segments;
     std::map<int, int> n_segments_at;
     for (Index s = 0; s < outline.segments.cols(); ++s) {
@@ -126,9 +138,11 @@ SPRINGFIT_CGAL_INLINE Outline checked(const Outline& outline, std::string_view n
                 throw InvalidArgument(name, text("point numbers in [0, ", outline.points.cols(), ")"),
                                       text(i, " in segment ", s));
             }
-            ends[static_cast<std::size_t>(e)] =
-                number.insert({{outline.points(0, i), outline.points(1, i)}, static_cast<int>(number.size())})
-                    .first->second;
+            const std::size_t found = near.find_or_add({outline.points(0, i), outline.points(1, i), 0}, points.size());
+            if (found == points.size()) {
+                points.emplace_back(outline.points.col(i));
+            }
+            ends[static_cast<std::size_t>(e)] = static_cast<int>(found);
         }
         if (ends[0] != ends[1]) {
             segments.push_back(ends);
@@ -138,12 +152,11 @@ SPRINGFIT_CGAL_INLINE Outline checked(const Outline& outline, std::string_view n
     require(unique.cols() >= 3, name, "an outline of at least three segments", unique.cols());
 
     detail::PlaneGraph graph;
-    graph.points.resize(number.size());
     Outline result;
-    result.points.resize(2, static_cast<Index>(number.size()));
-    for (const auto& [point, i] : number) {
-        graph.points[static_cast<std::size_t>(i)] = {point[0], point[1]};
-        result.points.col(i) << point[0], point[1];
+    result.points.resize(2, static_cast<Index>(points.size()));
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        graph.points.emplace_back(points[i].x(), points[i].y());
+        result.points.col(static_cast<Index>(i)) = points[i];
     }
     for (Index s = 0; s < unique.cols(); ++s) {
         graph.segments.push_back({unique(0, s), unique(1, s)});

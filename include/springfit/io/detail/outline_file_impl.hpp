@@ -41,8 +41,10 @@ namespace detail {
 
 [[nodiscard]] inline OutlineFile read_poly(TextScanner& scanner) {
     OutlineFile outline;
-    const long long n_points = poly_count(scanner, "vertices");
+    (void)scanner.peek();
+    const long long n_points = poly_whole(scanner, 0, std::numeric_limits<int>::max(), "the number of vertices");
     (void)poly_whole(scanner, 2, 2, "the dimension");
+    scanner.check_size(n_points, "vertices");
     if (n_points == 0) {
         scanner.refuse("no vertices here (a separate .node file is not read)");
     }
