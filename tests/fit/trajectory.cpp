@@ -187,7 +187,9 @@ TEST_CASE_TEMPLATE("the adjoint gradient is that of finite differences", T, Dime
         options.parameters.rest_length.fit = false;
         options.parameters.damping_per_stiffness = 0.05;
         SUBCASE("known") {}
-        SUBCASE("fitted as one value") { options.parameters.fit_damping_per_stiffness = true; }
+        SUBCASE("fitted as one value") {
+            options.parameters.fit_damping_per_stiffness = true;
+        }
         options.parameters.stiffness.ties.resize(static_cast<std::size_t>(prior.n_springs()));
         for (std::size_t e = 0; e < options.parameters.stiffness.ties.size(); ++e) {
             options.parameters.stiffness.ties[e] = static_cast<int>(e % 4);

@@ -138,7 +138,8 @@ class ColumnCg {
 public:
     ColumnCg(const Factor& factor, const Multiply& multiply, const ColumnBlock& right, const Eigen::ArrayXd& goal,
              ColumnBlock& solution)
-        : m_factor(factor), m_multiply(multiply), m_goal(goal), m_solution(solution), m_residual(right), m_active(static_cast<std::size_t>(right.cols()), 1) {
+        : m_factor(factor), m_multiply(multiply), m_goal(goal), m_solution(solution), m_residual(right),
+          m_active(static_cast<std::size_t>(right.cols()), 1) {
         m_solution.setZero(right.rows(), right.cols());
     }
 
