@@ -29,7 +29,8 @@ struct TriangulateOptions {
 /// An outline with points nearer than 1e-6 of its extent merged, segments given twice and those without length dropped.
 ///
 /// Throws InvalidArgument, naming `name`: for an outline that is empty, that has a coordinate that is not finite, that
-/// is open (how many loose ends), or whose segments cross, touch or overlap (how many pairs). O(n log n).
+/// is open (how many loose ends), or whose segments cross, touch or overlap to within
+/// that distance (how many pairs). O(n log n).
 [[nodiscard]] SPRINGFIT_CGAL_INLINE Outline checked(const Outline& outline, std::string_view name = "outline");
 
 /// Reads an outline: Triangle's .poly (numbered from 0 or 1) or .wkt (POLYGON and MULTIPOLYGON with holes).

@@ -12,6 +12,7 @@
 #include <CGAL/Delaunay_mesh_vertex_base_2.h>
 #include <CGAL/Delaunay_mesher_2.h>
 #include <CGAL/box_intersection_d.h>
+#include <CGAL/squared_distance_2.h>
 
 #include <springfit/cgal/detail/kernel.hpp>
 #include <springfit/core/error.hpp>
@@ -25,35 +26,40 @@ struct PlaneGraph {
     std::vector<std::array<int, 2>> segments;
 };
 
-/// Pairs of segments that cross, touch between their ends, or overlap. O(n log n) as a rule.
-inline Index count_crossings(const PlaneGraph& graph) {
+/// Pairs of segments that cross, or come as near to each other as `distance` elsewhere than at an end that they share.
+/// O(n log n) as a rule.
+inline Index count_crossings(const PlaneGraph& graph, double distance) {
     using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 2, int>;
     std::vector<Box> boxes;
     for (std::size_t s = 0; s < graph.segments.size(); ++s) {
         const auto& p = graph.points[static_cast<std::size_t>(graph.segments[s][0])];
         const auto& q = graph.points[static_cast<std::size_t>(graph.segments[s][1])];
-        boxes.emplace_back(p.bbox() + q.bbox(), static_cast<int>(s));
+        const CGAL::Bbox_2 box = p.bbox() + q.bbox();
+        boxes.emplace_back(
+            CGAL::Bbox_2(box.xmin() - distance, box.ymin() - distance, box.xmax() + distance, box.ymax() + distance),
+            static_cast<int>(s));
     }
     Index crossings = 0;
     CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& first, const Box& second) {
         const auto& s = graph.segments[static_cast<std::size_t>(first.info())];
         const auto& t = graph.segments[static_cast<std::size_t>(second.info())];
         const auto point = [&](int i) { return graph.points[static_cast<std::size_t>(i)]; };
+        const Kernel::Segment_2 on_s(point(s[0]), point(s[1]));
+        const Kernel::Segment_2 on_t(point(t[0]), point(t[1]));
+        const auto is_near = [&](int i, const Kernel::Segment_2& segment) {
+            return CGAL::squared_distance(point(i), segment) <= distance * distance;
+        };
         for (const std::size_t a : {0, 1}) {
             for (const std::size_t b : {0, 1}) {
                 if (s[a] == t[b]) { // joined at one end: they may still lie on each other
-                    const auto corner = point(s[a]);
-                    const auto p = point(s[1 - a]);
-                    const auto q = point(t[1 - b]);
-                    crossings += CGAL::collinear(corner, p, q) && (p - corner) * (q - corner) > 0 ? 1 : 0;
+                    crossings += is_near(s[1 - a], on_t) || is_near(t[1 - b], on_s) ? 1 : 0;
                     return;
                 }
             }
         }
-        crossings +=
-            CGAL::do_intersect(Kernel::Segment_2(point(s[0]), point(s[1])), Kernel::Segment_2(point(t[0]), point(t[1])))
-                ? 1
-                : 0;
+        const bool is_crossing = CGAL::do_intersect(on_s, on_t) || is_near(s[0], on_t) || is_near(s[1], on_t) ||
+                                 is_near(t[0], on_s) || is_near(t[1], on_s);
+        crossings += is_crossing ? 1 : 0;
     });
     return crossings;
 }

@@ -126,7 +126,8 @@ SPRINGFIT_CGAL_INLINE Outline checked(const Outline& outline, std::string_view n
     detail::check_extent(extent, name);
     const Vector<2, double> lowest =
         outline.points.cols() > 0 ? Vector<2, double>(outline.points.rowwise().minCoeff()) : Vector<2, double>(0, 0);
-    detail::NearPoints near({lowest.x(), lowest.y(), 0}, extent > 0 ? detail::merge_share * extent : 1.);
+    const double distance = extent > 0 ? detail::merge_share * extent : 1.;
+    detail::NearPoints near({lowest.x(), lowest.y(), 0}, distance);
     std::vector<Vector<2, double>> points;
     std::vector<std::array<int, 2>> segments;
     std::map<int, int> n_segments_at;
@@ -173,7 +174,7 @@ SPRINGFIT_CGAL_INLINE Outline checked(const Outline& outline, std::string_view n
                               text("an open one: ", loose, loose == 1 ? " loose end" : " loose ends",
                                    ", the first at (", result.points.col(first).transpose(), ")"));
     }
-    const Index crossings = detail::count_crossings(graph);
+    const Index crossings = detail::count_crossings(graph, distance);
     require(crossings == 0, name, "segments that meet at their ends only",
             text(crossings, crossings == 1 ? " pair" : " pairs", " that cross, touch or overlap"));
     result.segments = unique;
