@@ -78,7 +78,7 @@ TEST_CASE("open surfaces are refused with their boundary and closed where holes 
     open.cells = open.cells.rightCols(open.n_cells() - 1).eval();
     CHECK(message<InvalidArgument>([&] { cgal::require_solid(open, "ball.off"); }) ==
           "ball.off: expected a closed surface, found an open one: 3 boundary edges around 1 hole, 0.546523 across "
-          "(the surface is 3.4641); close it first");
+          "(the surface is 3.4641); close it first, or fill its holes (--fill-holes)");
     const auto found = cgal::examine(open);
     CHECK(found.holes == 1);
     CHECK(found.boundary_edges == 3);

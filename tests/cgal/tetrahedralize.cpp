@@ -156,7 +156,7 @@ TEST_CASE("what cannot be meshed is refused with what is wrong") {
     open.cells = open.cells.rightCols(11).eval();
     CHECK_THROWS_WITH_AS((void)cgal::tetrahedralize<double>(open, {.cell_size = 1}),
                          "surface: expected a closed surface, found an open one: 3 boundary edges around 1 hole, "
-                         "1.41421 across (the surface is 1.73205); close it first",
+                         "1.41421 across (the surface is 1.73205); close it first, or fill its holes (--fill-holes)",
                          InvalidArgument);
     CHECK(relative(volume(cgal::tetrahedralize<double>(open, {.cell_size = 1, .repair = {.max_hole_edges = 3}})), 1.,
                    1.) < 1e-12);

@@ -22,7 +22,7 @@ struct Calibration {
     Status status = Status::failed; ///< how the fit of the chosen one ended; `interrupted` where anything was cut short
     std::vector<PartError> parts;   ///< held-out errors of the chosen one by kind of case
     double period = 0;              ///< of the body's slowest motion, as the first closed form has it, s; 0: none
-    double damping_ratio = 0;       ///< of that motion, by the damping D = beta K, as a part of critical
+    double damping_ratio = 0;       ///< of the chosen one's slowest motion, by the damping D = beta K, part of critical
     double stable_step = 0;         ///< of the chosen one with the first held-out case's clamps, s
     std::vector<Warning> warnings;  ///< of the recording, of the fits and of the result
     std::vector<std::pair<std::string, double>> seconds; ///< of each stage: "reference", "fit", "score"

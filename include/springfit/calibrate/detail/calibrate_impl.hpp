@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <numbers>
 #include <string>
 #include <string_view>
 
@@ -275,7 +274,10 @@ Calibration<Dim> calibrate(const std::vector<NetworkVariant<Dim>>& variants, Rec
     const Candidate<Dim>& best = result.best();
     result.stable_step = stable_step(best.network, cases.held_out.motions.front().clamped);
     cases.stiffness_damping = best.stiffness_damping;
-    result.damping_ratio = result.period > 0 ? std::numbers::pi * best.stiffness_damping / result.period : 0.;
+    if (best.stiffness_damping > 0) {
+        const double omega = lowest_frequency(best.network, cases.held_out.motions.front().clamped).omega;
+        result.damping_ratio = best.stiffness_damping * omega / 2;
+    }
     result.cases = std::move(cases);
     return result;
 }

@@ -89,7 +89,7 @@ template <class Vertices>
     }
     return text("an open one: ", found.boundary_edges, " boundary edges around ", found.holes,
                 found.holes == 1 ? " hole, " : " holes, the largest ", size(largest), " across (the surface is ",
-                size(whole), "); close it first");
+                size(whole), "); close it first, or fill its holes (--fill-holes)");
 }
 
 inline SurfaceExamination require_solid(const TriangleSurface& surface, std::string_view name) {
