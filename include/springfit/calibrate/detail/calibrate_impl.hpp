@@ -62,12 +62,11 @@ void warn_of_failures(const Candidate<Dim>& best, const RecordedCases<Dim, doubl
     }
 }
 
-/// True for a fit that moves no better than rest where it was fitted, nor like the reference elsewhere.
+/// True where the best network moves no better than rest in what was to learn from, nor like the reference elsewhere.
 template <int Dim>
-bool has_learnt_nothing(const Candidate<Dim>& candidate, const VerdictLimits& limits) {
-    const bool is_fitted = candidate.acceleration.has_value() || candidate.trajectory.has_value();
-    return is_fitted && candidate.training.is_scored() && candidate.training.error > nothing_learnt &&
-           !is_usable(verdict_on(candidate.held_out, limits));
+bool has_learnt_nothing(const Candidate<Dim>& best, const VerdictLimits& limits) {
+    return best.training.is_scored() && best.training.error > nothing_learnt &&
+           !is_usable(verdict_on(best.held_out, limits));
 }
 
 /// Says what is bad where the verdict is, and what this input leaves to try.
