@@ -70,7 +70,9 @@ Mesh<2, double, Tri3> perforated_rectangle(double length, double height, double 
     return cgal::triangulate<double>(outline, {.n_nodes = n_nodes});
 }
 
-Mesh<3, double, Tet4> box_mesh(const std::array<double, 3>& size, Index n_nodes) {
+namespace {
+
+cgal::Surface box_surface(const std::array<double, 3>& size) {
     cgal::Surface surface;
     surface.nodes.resize(3, 8);
     for (int i = 0; i < 8; ++i) {
@@ -81,6 +83,43 @@ Mesh<3, double, Tet4> box_mesh(const std::array<double, 3>& size, Index n_nodes)
     surface.cells << 0, 0, 4, 4, 0, 0, 2, 2, 0, 0, 1, 1, //
         2, 3, 5, 7, 1, 5, 6, 7, 4, 6, 3, 7,              //
         3, 1, 7, 6, 5, 4, 7, 3, 6, 2, 7, 5;
+    return surface;
+}
+
+} // namespace
+
+Mesh<3, double, Tet4> box_mesh(const std::array<double, 3>& size, Index n_nodes) {
+    return cgal::tetrahedralize<double>(box_surface(size), {.n_nodes = n_nodes});
+}
+
+std::optional<Mesh<3, double, Tet4>> two_boxes_mesh(const std::array<double, 3>& size, double apart, Index n_nodes) {
+    auto surface = box_surface(size);
+    const auto one = surface;
+    surface.nodes.conservativeResize(3, 2 * one.nodes.cols());
+    surface.cells.conservativeResize(3, 2 * one.cells.cols());
+    surface.nodes.rightCols(one.nodes.cols()) = one.nodes.colwise() + Vector<3, double>(size[0] + apart, 0, 0);
+    surface.cells.rightCols(one.cells.cols()) = one.cells.array() + static_cast<int>(one.nodes.cols());
+    return cgal::tetrahedralize<double>(surface, {.n_nodes = n_nodes});
+}
+
+std::optional<Mesh<3, double, Tet4>> ring_mesh(double radius, double section, Index n_nodes) {
+    constexpr int around = 48, across = 8;
+    cgal::Surface surface;
+    surface.nodes.resize(3, around * across);
+    surface.cells.resize(3, 2 * around * across);
+    for (int i = 0; i < around; ++i) {
+        for (int j = 0; j < across; ++j) {
+            const double turn = 2 * std::numbers::pi * i / around;
+            const double angle = 2 * std::numbers::pi * j / across;
+            const double away = radius + section * std::cos(angle);
+            const int node = across * i + j;
+            surface.nodes.col(node) << away * std::cos(turn), away * std::sin(turn), section * std::sin(angle);
+            const int next = across * ((i + 1) % around);
+            const int beside = (j + 1) % across;
+            surface.cells.col(2 * node) << node, next + j, next + beside;
+            surface.cells.col(2 * node + 1) << node, next + beside, across * i + beside;
+        }
+    }
     return cgal::tetrahedralize<double>(surface, {.n_nodes = n_nodes});
 }
 
@@ -116,6 +155,14 @@ Mesh<3, double, Tet4> box_mesh(const std::array<double, 3>& size, Index n_nodes)
     const double cell = std::cbrt(size[0] * size[1] * size[2] / (0.6 * static_cast<double>(n_nodes)));
     const auto along = [&](double extent) { return std::max(1, static_cast<int>(std::lround(extent / cell))); };
     return random_cut_box({along(size[0]), along(size[1]), along(size[2])}, size, 1);
+}
+
+std::optional<Mesh<3, double, Tet4>> two_boxes_mesh(const std::array<double, 3>&, double, Index) {
+    return {};
+}
+
+std::optional<Mesh<3, double, Tet4>> ring_mesh(double, double, Index) {
+    return {};
 }
 
 std::optional<Mesh<3, double, Tet4>> solid_mesh(const std::filesystem::path& path, Index) {

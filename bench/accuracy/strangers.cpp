@@ -142,7 +142,13 @@ void study_strangers(Report& report, const Settings& settings) {
     box("rod, 10:1", {0.1, 1, 0.1}, 600, 0.3);
     box("rod, 40:1", {0.025, 1, 0.025}, 600, 0.3);
     box("plate, 20:1", {1, 1, 0.05}, 600, 0.3);
-    for (const Index n_nodes : {80, 300, 900}) {
+    if (const auto ring = ring_mesh(0.5, 0.05, 600)) {
+        newcomer.try_body("ring, 20:1", *ring, 0.3);
+    }
+    if (const auto boxes = two_boxes_mesh({0.2, 1, 0.2}, 0.1, 600)) {
+        newcomer.try_body("two pieces", *boxes, 0.3);
+    }
+    for (const Index n_nodes : {80, 150, 300, 900}) {
         newcomer.try_body("plate with a hole", plate_with_hole(n_nodes), 0.3);
     }
     if (settings.data.empty()) {

@@ -55,6 +55,13 @@ void study_time(Report& report, const Settings& settings);
 [[nodiscard]] springfit::Mesh<2, double, springfit::Tri3> perforated_rectangle(double length, double height,
                                                                                double radius, Index n_nodes);
 [[nodiscard]] springfit::Mesh<3, double, springfit::Tet4> box_mesh(const std::array<double, 3>& size, Index n_nodes);
+/// Two boxes side by side along x; nothing without CGAL.
+[[nodiscard]] std::optional<springfit::Mesh<3, double, springfit::Tet4>>
+two_boxes_mesh(const std::array<double, 3>& size, double apart, Index n_nodes);
+/// A ring around z with a round section, of the radius of its middle line and that of the section; nothing without
+/// CGAL.
+[[nodiscard]] std::optional<springfit::Mesh<3, double, springfit::Tet4>> ring_mesh(double radius, double section,
+                                                                                   Index n_nodes);
 /// The inside of a surface; nothing, with the reason on standard output, where there is no such file or no solid.
 [[nodiscard]] std::optional<springfit::Mesh<3, double, springfit::Tet4>> solid_mesh(const std::filesystem::path& path,
                                                                                     Index n_nodes);

@@ -155,9 +155,12 @@ TEST_CASE_TEMPLATE("the damping of a recording is found with its stiffness, from
         CAPTURE(at_once);
         const std::vector<Motion<dim, double>> recorded{falling(truth, 1, at_once), falling(truth, 0.2, at_once),
                                                         falling(truth, -0.6, at_once)};
-        const auto principal = detail::principal_motion<dim>(recorded, truth.mass);
-        CHECK(principal.c / principal.omega_squared > beta / 3);
-        CHECK(principal.c / principal.omega_squared < beta * 3);
+        if (!at_once) { // which excites motions that are not the principal one as well: a start all the same
+            const auto principal = detail::principal_motion<dim>(recorded, truth.mass);
+            CHECK(test::relative(principal.omega_squared, omega * omega, omega * omega) < 0.2);
+            CHECK(principal.c / principal.omega_squared > beta / 3);
+            CHECK(principal.c / principal.omega_squared < beta * 3);
+        }
         auto options = matching();
         const auto result = calibrate(test::even(truth), split_motions<dim, double>(recorded), options);
         CHECK(test::relative(result.cases.stiffness_damping, beta, beta) < 0.05);
